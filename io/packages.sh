@@ -1,0 +1,25 @@
+# The project's Debian 12 packages: the one list. Sourced by io/demo.sh and tests/run.sh.
+# shellcheck shell=bash disable=SC2034
+
+build_packages=(g++ cmake ninja-build libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libspdlog-dev libtbb-dev
+  libtomlplusplus-dev libxsimd-dev nlohmann-json3-dev)
+
+demo_packages=("${build_packages[@]}" python3 python3-matplotlib python3-numpy)
+
+# clang-14: libFuzzer and clang-tidy; qemu-user: the program on a processor without AVX; h5py: another reader of our files.
+test_packages=("${build_packages[@]}" binutils clang-14 clang-format-14 clang-tidy-14 doctest-dev git libbenchmark-dev
+  libclang-rt-14-dev python3 python3-h5py python3-numpy qemu-user)
+
+# install_packages NAME...: what is missing, and nothing (no network either) if nothing is.
+install_packages() {
+  local missing=() package
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f='${db:Status-Abbrev}' "$package" 2>/dev/null)" = "ii " ] || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  echo "Installing: ${missing[*]}"
+  local as_root=()
+  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+  "${as_root[@]}" apt-get update -qq &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"
+}

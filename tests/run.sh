@@ -1,0 +1,127 @@
+#!/usr/bin/env bash
+# Installs what the tests need, builds, and runs every test; the last line is the sum: "N passed, N failed".
+#   bash tests/run.sh          some twenty minutes on two cores
+#   bash tests/run.sh --full   the long forms too, and every test under the sanitizers
+# What each check printed is in build/checks/.
+set -uo pipefail
+cd "$(dirname "$0")/.." || exit 1
+source io/packages.sh
+
+full=0
+case "${1-}" in
+  "") ;;
+  --full) full=1 ;;
+  *) echo "usage: bash tests/run.sh [--full]" >&2; exit 2 ;;
+esac
+[ $full -eq 1 ] && export GRANDAMP_FULL=1
+fuzz_seconds=60
+# Without --full: the folders whose tests reach every line; the long runs of the others only repeat them.
+sanitized='^(kernels|solver|io)/'
+[ $full -eq 1 ] && sanitized='.'
+
+jobs=$(nproc)
+logs=build/checks
+passed=0 failed=0 failures=()
+mkdir -p $logs
+
+finish() {
+  [ ${#failures[@]} -gt 0 ] && printf 'failed: %s\n' "${failures[@]}"
+  echo "$passed passed, $failed failed"
+  [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+  exit
+}
+
+# check NAME COMMAND...: one test that is a script.
+check() {
+  local name=$1 start=$SECONDS
+  shift
+  if "$@" >"$logs/$name.log" 2>&1; then
+    passed=$((passed + 1))
+    echo "ok      $name ($((SECONDS - start)) s)"
+  else
+    failed=$((failed + 1))
+    failures+=("$name ($logs/$name.log)")
+    echo "FAILED  $name ($((SECONDS - start)) s)"
+    tail -n 40 "$logs/$name.log"
+  fi
+}
+
+# need NAME COMMAND...: without it nothing further makes sense.
+need() {
+  local before=$failed
+  check "$@"
+  [ "$failed" -eq "$before" ] || finish
+}
+
+build() { cmake --preset "$1" && cmake --build --preset "$1" -j "$jobs"; }
+
+# cases NAME BUILD PATTERN: the doctest cases of a build whose names match. All of them must be known to ctest.
+cases() {
+  local name=$1 folder=$2 pattern=$3 start=$SECONDS counts known here program report=$logs/$1.xml
+  rm -f "$report"
+  here=0
+  for program in "$folder"/tests/test_*; do
+    [ -f "$program" ] && [ -x "$program" ] || continue
+    here=$((here + $("$program" --count --no-version | sed -n 's/.*test cases.*: *\([0-9]*\)$/\1/p')))
+  done
+  known=$(ctest --test-dir "$folder" --show-only | sed -n 's/^Total Tests: *//p')
+  if [ "$here" != "$known" ]; then
+    failed=$((failed + 1))
+    failures+=("$name: the executables hold $here cases, ctest knows ${known:-none}; a name has a semicolon or a bracket?")
+  fi
+  ctest --test-dir "$folder" -j "$jobs" -R "$pattern" --no-tests=error --output-on-failure \
+    --output-junit "$PWD/$report" >"$logs/$name.log" 2>&1
+  counts=$(sed -n '/<testsuite /,/>/p' "$report" 2>/dev/null | tr '\n\t' '  ')
+  local total bad skipped
+  total=$(sed -n 's/.* tests="\([0-9]*\)".*/\1/p' <<<"$counts")
+  bad=$(sed -n 's/.* failures="\([0-9]*\)".*/\1/p' <<<"$counts")
+  skipped=$(sed -n 's/.* disabled="\([0-9]*\)".* skipped="\([0-9]*\)".*/\1 \2/p' <<<"$counts" | awk '{print $1 + $2}')
+  if [ "${total:-0}" -eq 0 ]; then
+    failed=$((failed + 1))
+    failures+=("$name: no tests were run ($logs/$name.log)")
+    return
+  fi
+  bad=$((bad + skipped))
+  passed=$((passed + total - bad))
+  failed=$((failed + bad))
+  echo "$([ "$bad" -eq 0 ] && echo "ok    " || echo FAILED)  $name: $((total - bad)) of $total cases ($((SECONDS - start)) s)"
+  if [ "$bad" -gt 0 ]; then
+    sed -n '/The following tests FAILED/,$p' "$logs/$name.log"
+    grep -B 2 -A 12 'ERROR' "$logs/$name.log" | head -n 200
+    failures+=("$name: $bad ($logs/$name.log)")
+  fi
+}
+
+format() {
+  git ls-files -co --exclude-standard -- '*.cpp' '*.hpp' | xargs -r ls -d 2>/dev/null | xargs clang-format-14 --dry-run -Werror
+}
+
+# One object per instruction set instantiates the same templates; the generic one stands for all.
+tidy() {
+  run-clang-tidy-14 -p build -j "$jobs" -quiet "$PWD/(kernels|solver|io)/(?!kernels_avx).*\.cpp$"
+}
+
+fuzz() {
+  local name=$1 found=$PWD/build-fuzz/found/$1
+  mkdir -p "$found/corpus"
+  "build-fuzz/tests/fuzz/$name" -max_total_time=$fuzz_seconds -timeout=20 -rss_limit_mb=3000 -print_final_stats=1 \
+    -artifact_prefix="$found/" "$found/corpus" "tests/fuzz/${name%_fuzz}_corpus"
+}
+
+need packages install_packages "${test_packages[@]}"
+check layering bash tests/layering/check.sh
+check format format
+need build_release build release
+cases tests build .
+check package bash tests/package/check.sh build
+if [ "$(uname -m)" = x86_64 ]; then
+  check portable_symbols bash tests/portability/check_symbols.sh build
+  check old_processor bash tests/portability/check_old_processor.sh build
+fi
+check tidy tidy
+check build_sanitize build sanitize && cases sanitized build-sanitize "$sanitized"
+check build_fuzz build fuzz
+for source in tests/fuzz/*_fuzz.cpp; do
+  check "$(basename "$source" .cpp)" fuzz "$(basename "$source" .cpp)"
+done
+finish
