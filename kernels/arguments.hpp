@@ -1,0 +1,121 @@
+// What the kernels are handed, and what they hand back. Plain pointers into arrays that the solver owns.
+#pragma once
+
+#include "kernels/contact_law.hpp"
+#include "kernels/rows.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace grandamp::kernels {
+
+/// The arrays of a region's granules. `ghost` and ghost + 1 are two rows past the last granule, far from everything
+/// and from each other: lists are padded with them.
+struct GranuleArrays {
+  PositionRow* position = nullptr;
+  MotionRow* motion = nullptr;    ///< half-step velocities
+  MotionRow* predicted = nullptr; ///< the velocities that forces see; the same array as motion under leapfrog
+  ForceRow* force = nullptr;
+  std::uint8_t* population = nullptr;
+  DampingRow* damping_granule = nullptr; ///< ledger only
+  DampingRow* damping_wall = nullptr;
+  ForceRow* friction_granule = nullptr;
+  ForceRow* friction_wall = nullptr;
+  std::uint32_t ghost = 0; ///< number of granules
+};
+
+/// What contacts told. max_overlap and max_closing go in as the largest so far.
+struct ContactResult {
+  double max_overlap = 0.0;  ///< over the smaller radius
+  double max_closing = 0.0;  ///< m/s
+  double elastic = 0.0;      ///< J; only with energies
+  std::int64_t contacts = 0; ///< only with energies
+};
+
+struct PairArguments {
+  GranuleArrays granules;
+  const CandidatePair* pairs = nullptr;
+  std::size_t count = 0;             ///< a multiple of list_padding
+  CandidatePair* touching = nullptr; ///< scratch of pair_chunk + list_padding entries
+  LawRow law{};                      ///< of all pairs (not with Variety::materials)
+  const LawRow* laws = nullptr;      ///< populations x populations (Variety::materials)
+  std::size_t populations = 1;
+  double radius = 0.0;       ///< of every granule (Variety::alike), m
+  double mass = 0.0;         ///< of every granule (Variety::alike), kg
+  double friction_cap = 0.0; ///< c (2/7, or 1 without rotation) / dt, 1/s
+};
+
+/// Candidates tested before their contacts are worked off.
+inline constexpr std::size_t pair_chunk = 4096;
+
+/// A wall: a plane n.x = offset with n pointing out of the enclosure, or the side of a cylinder.
+struct WallSurface {
+  double normal[3] = {0.0, 0.0, 0.0}; ///< plane
+  double offset = 0.0;                ///< plane, m
+  double across[3] = {1.0, 1.0, 0.0}; ///< side: 1 across the axis, 0 along it
+  double centre[3] = {0.0, 0.0, 0.0}; ///< side: a point of the axis, m
+  double radius = 0.0;                ///< side, m
+};
+
+struct WallArguments {
+  GranuleArrays granules;
+  WallSurface surface;
+  const std::uint32_t* list = nullptr; ///< padded with `ghost` to a multiple of list_padding
+  std::size_t count = 0;               ///< without the padding
+  std::uint32_t* touching = nullptr;   ///< scratch of the padded count
+  LawRow law{};
+  const LawRow* laws = nullptr;          ///< by population (Variety::materials)
+  double direction[3] = {0.0, 0.0, 0.0}; ///< of the enclosure's motion
+  double enclosure_inverse_mass = 0.0;   ///< of a structure, 1/kg; else 0
+  double friction_inverse_mass = 0.0;    ///< share of the structure in the friction's cap, 1/kg
+  double friction_cap = 0.0;             ///< as in PairArguments
+};
+
+struct WallResult : ContactResult {
+  double force[3] = {0.0, 0.0, 0.0}; ///< on the granules, N
+};
+
+struct MotionArguments {
+  GranuleArrays granules;
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;                     ///< one past
+  double time_step = 0.0;                     ///< s
+  double kick[3] = {0.0, 0.0, 0.0};           ///< g dt minus the enclosure's velocity increment, m/s
+  double frame_velocity[3] = {0.0, 0.0, 0.0}; ///< of the enclosure at t_n, m/s (energies)
+};
+
+/// Sums are in granule order; max_speed_squared goes in as the largest so far.
+struct MotionResult {
+  double max_speed_squared = 0.0;
+  double sum_speed_squared = 0.0;          ///< of all, so that a NaN or an infinity shows
+  double kinetic = 0.0;                    ///< laboratory frame, at t_n, J (energies)
+  double mass_moment[3] = {0.0, 0.0, 0.0}; ///< sum of m x, enclosure's frame, at t_n, kg m (energies)
+  double normal_granule = 0.0;             ///< dissipated in this step, J (ledger)
+  double normal_wall = 0.0;
+  double friction_granule = 0.0;
+  double friction_wall = 0.0;
+};
+
+/// Candidate search for the granules of one cell against contiguous ranges of others. Reads positions as four arrays.
+struct CandidateArguments {
+  const double* x = nullptr;
+  const double* y = nullptr;
+  const double* z = nullptr;
+  const double* radius = nullptr; ///< null if all are alike
+  double reach = 0.0;             ///< skin; alike: both radii and the skin, m
+};
+
+struct IndexRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0; ///< one past
+};
+
+using PairKernel = void(const PairArguments&, ContactResult&);
+using WallKernel = void(const WallArguments&, WallResult&);
+using MotionKernel = void(const MotionArguments&, MotionResult&);
+/// Granules [own.first, own.last) against those after them up to own_end, and against `count` ranges. Appends at `to`
+/// (which must have room for every pair tested, and list_padding more) and returns the new end.
+using CandidateKernel = CandidatePair*(const CandidateArguments&, IndexRange own, std::uint32_t own_end,
+                                       const IndexRange* ranges, int count, CandidatePair* to);
+
+} // namespace grandamp::kernels

@@ -1,0 +1,22 @@
+// Chooses the kernels of a run once: by instruction set and set of effects.
+#pragma once
+
+#include "kernels/arguments.hpp"
+#include "kernels/effects.hpp"
+
+namespace grandamp::kernels {
+
+enum class InstructionSet { generic, avx2, avx512 };
+
+/// Built into this binary and run by this machine.
+bool available(InstructionSet set);
+InstructionSet best_available();
+const char* name(InstructionSet set);
+
+PairKernel* pair_kernel_for(InstructionSet set, ContactEffects effects);
+WallKernel* plane_kernel_for(InstructionSet set, ContactEffects effects);
+WallKernel* side_kernel_for(InstructionSet set, ContactEffects effects);
+MotionKernel* motion_kernel_for(InstructionSet set, MotionEffects effects);
+CandidateKernel* candidate_kernel_for(InstructionSet set, bool alike);
+
+} // namespace grandamp::kernels

@@ -1,0 +1,140 @@
+// A granule's step: kick by force, gravity and the enclosure's own velocity increment, then drift. The rows of force
+// are cleared on the way. Rows stay rows; only the largest speed needs a transpose.
+#pragma once
+
+#include "kernels/arguments.hpp"
+
+namespace grandamp::kernels {
+
+template <class S, MotionEffects E> struct MotionLoop {
+  using Vector = typename S::Vector;
+  using Row = typename S::Row;
+  static constexpr int width = S::width;
+
+  const MotionArguments& a;
+  const Row zero = S::row_broadcast(0.0);
+  const Row half = S::row_broadcast(0.5);
+  const Row kick = S::row_set(a.kick[0], a.kick[1], a.kick[2], 0.0);
+  const Row frame = S::row_set(a.frame_velocity[0], a.frame_velocity[1], a.frame_velocity[2], 0.0);
+  const Row drift = S::row_set(a.time_step, a.time_step, a.time_step, 0.0);
+  const double turn_step = 2.5 * a.time_step; ///< T/I = (5/2) turn / (m r), and s = r omega
+  Row kinetic = zero, spinning = zero, moment = zero;
+  Row normal_granule = zero, normal_wall = zero;
+  Row friction_granule = zero, friction_granule_turn = zero, friction_wall = zero, friction_wall_turn = zero;
+
+  /// Moves granule i; its new velocity.
+  Row move(std::uint32_t i) {
+    MotionRow& motion = a.granules.motion[i];
+    ForceRow& force = a.granules.force[i];
+    const double inverse_mass = motion.inverse_mass;
+    const Row before = S::row_load(motion.velocity);
+    Row after = S::row_fma(S::row_load(force.force), S::row_broadcast(inverse_mass * a.time_step), before);
+    if constexpr (E.accelerated) after = after + kick;
+    S::row_store(force.force, zero);
+
+    Row spin_before = zero, spin_after = zero;
+    if constexpr (E.rotates) {
+      spin_before = S::row_load(motion.surface_spin);
+      spin_after = S::row_fma(S::row_load(force.turn), S::row_broadcast(inverse_mass * turn_step), spin_before);
+      S::row_store(force.turn, zero);
+      S::row_store(motion.surface_spin, spin_after);
+    }
+
+    double* position = &a.granules.position[i].x;
+    const Row here = S::row_load(position);
+    if constexpr (E.energies() || E.ledger()) {
+      const Row mean = half * (before + after);
+      const Row mean_spin = half * (spin_before + spin_after);
+      if constexpr (E.energies()) observe(inverse_mass, mean, mean_spin, here);
+      if constexpr (E.ledger()) dissipate(i, mean, mean_spin);
+    }
+    S::row_store(motion.velocity, after);
+    S::row_store(position, S::row_fma(drift, after, here));
+
+    if constexpr (E.integration == Integration::verlet) {
+      MotionRow& predicted = a.granules.predicted[i];
+      S::row_store(predicted.velocity, S::row_fma(half, after - before, after));
+      if constexpr (E.rotates)
+        S::row_store(predicted.surface_spin, S::row_fma(half, spin_after - spin_before, spin_after));
+    }
+    return after;
+  }
+
+  void observe(double inverse_mass, Row mean, Row mean_spin, Row here) {
+    const Row mass = S::row_broadcast(1.0 / inverse_mass);
+    const Row laboratory = mean + frame;
+    kinetic = S::row_fma(mass * laboratory, laboratory, kinetic);
+    if constexpr (E.rotates) spinning = S::row_fma(mass * mean_spin, mean_spin, spinning);
+    moment = S::row_fma(mass, here, moment);
+  }
+
+  /// Work that each kind of force took from the granule over the step, per unit of time. It is linear in the force:
+  /// summing forces by kind and multiplying by the granule's mean velocity gives the sum over its contacts.
+  void dissipate(std::uint32_t i, Row mean, Row mean_spin) {
+    const GranuleArrays& g = a.granules;
+    normal_granule = S::row_fnma(S::row_load(g.damping_granule[i].force), mean, normal_granule);
+    normal_wall = S::row_fnma(S::row_load(g.damping_wall[i].force), mean, normal_wall);
+    S::row_store(g.damping_granule[i].force, zero);
+    S::row_store(g.damping_wall[i].force, zero);
+    friction_granule = S::row_fnma(S::row_load(g.friction_granule[i].force), mean, friction_granule);
+    friction_wall = S::row_fnma(S::row_load(g.friction_wall[i].force), mean, friction_wall);
+    S::row_store(g.friction_granule[i].force, zero);
+    S::row_store(g.friction_wall[i].force, zero);
+    if constexpr (E.rotates) {
+      friction_granule_turn = S::row_fnma(S::row_load(g.friction_granule[i].turn), mean_spin, friction_granule_turn);
+      friction_wall_turn = S::row_fnma(S::row_load(g.friction_wall[i].turn), mean_spin, friction_wall_turn);
+      S::row_store(g.friction_granule[i].turn, zero);
+      S::row_store(g.friction_wall[i].turn, zero);
+    }
+  }
+
+  GRANDAMP_INLINE double sum(Row row) {
+    alignas(32) double v[4];
+    S::row_store(v, row);
+    return v[0] + v[1] + v[2]; // the fourth component holds an inverse mass or radius, never energy
+  }
+};
+
+/// Steps the granules first <= i < last.
+template <class S, MotionEffects E> void motion_kernel(const MotionArguments& a, MotionResult& result) {
+  using Vector = typename S::Vector;
+  using Row = typename S::Row;
+  constexpr std::uint32_t width = S::width;
+  MotionLoop<S, E> loop{.a = a};
+  Vector fastest = S::broadcast(result.max_speed_squared);
+  Vector total = S::broadcast(0.0);
+  Row rows[width];
+  for (std::uint32_t i = a.first; i < a.last; i += width) {
+    const std::uint32_t lanes = a.last - i < width ? a.last - i : width;
+    if (lanes == width)
+      for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = loop.move(i + lane);
+    else
+      for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = lane < lanes ? loop.move(i + lane) : loop.zero;
+    Vector x, y, z, inverse_mass;
+    S::columns(rows, x, y, z, inverse_mass);
+    const Vector square = S::fma(z, z, S::fma(y, y, x * x));
+    fastest = S::max(fastest, square);
+    total = total + square;
+  }
+  double fast[width], all[width];
+  S::store(fast, fastest);
+  S::store(all, total);
+  for (std::uint32_t lane = 0; lane < width; ++lane) {
+    if (fast[lane] > result.max_speed_squared) result.max_speed_squared = fast[lane];
+    result.sum_speed_squared += all[lane];
+  }
+  if constexpr (E.energies()) {
+    result.kinetic += 0.5 * loop.sum(loop.kinetic) + 0.2 * loop.sum(loop.spinning); // I omega^2 / 2 = m s^2 / 5
+    alignas(32) double moment[4];
+    S::row_store(moment, loop.moment);
+    for (int k = 0; k < 3; ++k) result.mass_moment[k] += moment[k];
+  }
+  if constexpr (E.ledger()) {
+    result.normal_granule += a.time_step * loop.sum(loop.normal_granule);
+    result.normal_wall += a.time_step * loop.sum(loop.normal_wall);
+    result.friction_granule += a.time_step * (loop.sum(loop.friction_granule) + loop.sum(loop.friction_granule_turn));
+    result.friction_wall += a.time_step * (loop.sum(loop.friction_wall) + loop.sum(loop.friction_wall_turn));
+  }
+}
+
+} // namespace grandamp::kernels

@@ -1,0 +1,207 @@
+// Granule against granule: test the candidates, gather those that touch, work the law off on full lanes, add the
+// forces row by row. Rows i and j are subtracted before they are transposed: two loads and one transpose per quantity.
+#pragma once
+
+#include "kernels/arguments.hpp"
+
+namespace grandamp::kernels {
+
+/// Sum of a law's constants by population, transposed to lanes.
+template <class S, class Index> GRANDAMP_INLINE LawVectors<S> gathered_laws(const LawRow* laws, Index index) {
+  typename S::Row rows[S::width];
+  for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(&laws[index(lane)].stiffness);
+  LawVectors<S> law;
+  typename S::Vector unused;
+  S::columns(rows, law.stiffness, law.damping, law.friction, unused);
+  return law;
+}
+
+template <class S> GRANDAMP_INLINE LawVectors<S> common_law(const LawRow& law) {
+  return {S::broadcast(law.stiffness), S::broadcast(law.damping), S::broadcast(law.friction)};
+}
+
+/// Adds the lanes' elastic energy in list order, whatever the lane count.
+template <class S> GRANDAMP_INLINE void add_in_order(typename S::Vector v, unsigned lanes, double& sum) {
+  double values[S::width];
+  S::store(values, v);
+  for (unsigned lane = 0; lane < lanes; ++lane) sum += values[lane];
+}
+
+template <class S> GRANDAMP_INLINE double largest(typename S::Vector v, double so_far) {
+  double values[S::width];
+  S::store(values, v);
+  for (int lane = 0; lane < S::width; ++lane) so_far = values[lane] > so_far ? values[lane] : so_far;
+  return so_far;
+}
+
+template <class S, ContactEffects E> struct PairLoop {
+  using Vector = typename S::Vector;
+  using Row = typename S::Row;
+  static constexpr int width = S::width;
+  static constexpr bool alike = E.variety == Variety::alike;
+
+  const PairArguments& a;
+  const Row last_flipped = S::row_set(1.0, 1.0, 1.0, -1.0);
+  Vector max_overlap;
+  Vector max_closing = S::broadcast(0.0);
+
+  /// p_j - p_i of `width` pairs, and the sum of their radii.
+  void difference(const CandidatePair* pairs, Vector& x, Vector& y, Vector& z, Vector& radii) const {
+    const PositionRow* position = a.granules.position;
+    Row rows[width];
+    for (int lane = 0; lane < width; ++lane) {
+      const Row i = S::row_load(&position[pairs[lane].first].x);
+      const Row j = S::row_load(&position[pairs[lane].second].x);
+      if constexpr (alike)
+        rows[lane] = j - i;
+      else
+        rows[lane] = S::row_fnma(last_flipped, i, j);
+    }
+    S::columns(rows, x, y, z, radii);
+    if constexpr (alike) radii = S::broadcast(2.0 * a.radius);
+  }
+
+  /// Moves the pairs that touch to the scratch list; returns their number.
+  std::size_t touching(const CandidatePair* pairs, std::size_t count) const {
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < count; k += width) {
+      Vector x, y, z, radii;
+      difference(pairs + k, x, y, z, radii);
+      const Vector square = S::fma(z, z, S::fma(y, y, x * x));
+      n += S::select(pairs + k, S::less(square, radii * radii), a.touching + n);
+    }
+    return n;
+  }
+
+  void contacts(const CandidatePair* pairs, unsigned lanes, ContactResult& result) {
+    ContactGeometry<S> c;
+    Vector x, y, z, radii;
+    difference(pairs, x, y, z, radii);
+    const Vector distance = S::sqrt(S::fma(z, z, S::fma(y, y, x * x)));
+    const Vector inverse = S::broadcast(1.0) / distance;
+    c.overlap = S::max(radii - distance, S::broadcast(0.0));
+    c.nx = x * inverse;
+    c.ny = y * inverse;
+    c.nz = z * inverse;
+
+    const MotionRow* motion = a.granules.predicted;
+    Row rows[width];
+    Vector inverse_mass, inverse_radius;
+    for (int lane = 0; lane < width; ++lane) {
+      const Row i = S::row_load(motion[pairs[lane].first].velocity);
+      const Row j = S::row_load(motion[pairs[lane].second].velocity);
+      if constexpr (alike)
+        rows[lane] = i - j;
+      else
+        rows[lane] = S::row_fnma(last_flipped, j, i);
+    }
+    S::columns(rows, c.vx, c.vy, c.vz, inverse_mass);
+    if constexpr (E.rotates() || !alike) {
+      for (int lane = 0; lane < width; ++lane)
+        rows[lane] =
+            S::row_load(motion[pairs[lane].first].surface_spin) + S::row_load(motion[pairs[lane].second].surface_spin);
+      S::columns(rows, c.sx, c.sy, c.sz, inverse_radius);
+    }
+    if constexpr (alike) {
+      c.radius = S::broadcast(0.5 * a.radius);
+      c.mass = S::broadcast(0.5 * a.mass);
+      c.lever = distance * S::broadcast(0.5 / a.radius);
+      max_overlap = S::max(max_overlap, c.overlap * S::broadcast(1.0 / a.radius));
+    } else {
+      c.radius = S::broadcast(1.0) / inverse_radius;
+      c.mass = S::broadcast(1.0) / inverse_mass;
+      c.lever = distance / radii;
+      // The larger inverse radius is at most the sum: the exact ratio is worked out only where it could be a record.
+      if (S::less(max_overlap, c.overlap * inverse_radius)) deepest(pairs, lanes, c.overlap);
+    }
+    c.friction_mass = c.mass;
+
+    LawVectors<S> law;
+    if constexpr (E.variety == Variety::materials)
+      law = gathered_laws<S>(a.laws, [&](int lane) {
+        return a.granules.population[pairs[lane].first] * a.populations + a.granules.population[pairs[lane].second];
+      });
+    else
+      law = common_law<S>(a.law);
+
+    const ContactForces<S> f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap));
+    max_closing = S::max(max_closing, f.closing);
+    if constexpr (E.energies()) {
+      add_in_order<S>(f.elastic, lanes, result.elastic);
+      result.contacts += lanes;
+    }
+    add_rows(pairs, lanes, c, f);
+  }
+
+  void add_rows(const CandidatePair* pairs, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
+    const Vector zero = S::broadcast(0.0);
+    Row forces[width], turns[width];
+    S::rows(f.fx, f.fy, f.fz, zero, forces);
+    if constexpr (E.rotates()) S::rows(f.tx, f.ty, f.tz, zero, turns);
+    ForceRow* force = a.granules.force;
+    for (unsigned lane = 0; lane < lanes; ++lane) {
+      ForceRow& i = force[pairs[lane].first];
+      ForceRow& j = force[pairs[lane].second];
+      S::row_store(i.force, S::row_load(i.force) + forces[lane]);
+      S::row_store(j.force, S::row_load(j.force) - forces[lane]);
+      if constexpr (E.rotates()) {
+        S::row_store(i.turn, S::row_load(i.turn) + turns[lane]);
+        S::row_store(j.turn, S::row_load(j.turn) + turns[lane]);
+      }
+    }
+    if constexpr (E.ledger() && E.damped()) {
+      Row damping[width];
+      S::rows((zero - f.damping) * c.nx, (zero - f.damping) * c.ny, (zero - f.damping) * c.nz, zero, damping);
+      for (unsigned lane = 0; lane < lanes; ++lane) {
+        double* i = a.granules.damping_granule[pairs[lane].first].force;
+        double* j = a.granules.damping_granule[pairs[lane].second].force;
+        S::row_store(i, S::row_load(i) + damping[lane]);
+        S::row_store(j, S::row_load(j) - damping[lane]);
+      }
+    }
+    if constexpr (E.ledger() && E.rubs()) {
+      Row rubbing[width];
+      S::rows(f.rx, f.ry, f.rz, zero, rubbing);
+      for (unsigned lane = 0; lane < lanes; ++lane) {
+        ForceRow& i = a.granules.friction_granule[pairs[lane].first];
+        ForceRow& j = a.granules.friction_granule[pairs[lane].second];
+        S::row_store(i.force, S::row_load(i.force) + rubbing[lane]);
+        S::row_store(j.force, S::row_load(j.force) - rubbing[lane]);
+        if constexpr (E.rotates()) {
+          S::row_store(i.turn, S::row_load(i.turn) + turns[lane]);
+          S::row_store(j.turn, S::row_load(j.turn) + turns[lane]);
+        }
+      }
+    }
+  }
+
+  [[gnu::noinline]] void deepest(const CandidatePair* pairs, unsigned lanes, Vector overlap) {
+    double overlaps[width];
+    S::store(overlaps, overlap);
+    double record = largest<S>(max_overlap, 0.0);
+    for (unsigned lane = 0; lane < lanes; ++lane) {
+      const double i = a.granules.position[pairs[lane].first].radius;
+      const double j = a.granules.position[pairs[lane].second].radius;
+      const double ratio = overlaps[lane] / (i < j ? i : j);
+      record = ratio > record ? ratio : record;
+    }
+    max_overlap = S::broadcast(record);
+  }
+};
+
+/// Adds the contact forces of the candidate pairs to the force rows (and the ledger's rows).
+template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, ContactResult& result) {
+  PairLoop<S, E> loop{.a = a, .max_overlap = S::broadcast(result.max_overlap)};
+  for (std::size_t begin = 0; begin < a.count; begin += pair_chunk) {
+    const std::size_t left = a.count - begin;
+    const std::size_t n = loop.touching(a.pairs + begin, left < pair_chunk ? left : pair_chunk);
+    const CandidatePair nobody{a.granules.ghost, a.granules.ghost + 1};
+    for (unsigned lane = 0; lane < list_padding; ++lane) a.touching[n + lane] = nobody;
+    for (std::size_t k = 0; k < n; k += S::width)
+      loop.contacts(a.touching + k, static_cast<unsigned>(n - k < S::width ? n - k : S::width), result);
+  }
+  result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
+  result.max_closing = largest<S>(loop.max_closing, result.max_closing);
+}
+
+} // namespace grandamp::kernels

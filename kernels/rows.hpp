@@ -1,0 +1,47 @@
+// The rows that a step works on: one array per quantity, in cell-sorted order, everything in the enclosure's frame.
+// Spin is kept as s = r omega (m/s), so that a contact adds the rows of its two granules and needs no radius; the
+// inverses of mass and radius ride along because a pair needs 1/m_i + 1/m_j and 1/r_i + 1/r_j.
+#pragma once
+
+#include <cstdint>
+
+namespace grandamp::kernels {
+
+struct alignas(32) PositionRow {
+  double x, y, z;
+  double radius;
+};
+
+struct alignas(64) MotionRow {
+  double velocity[3];
+  double inverse_mass;
+  double surface_spin[3]; ///< radius times angular velocity, m/s
+  double inverse_radius;
+};
+
+/// Forces and lever-weighted friction: `turn` is (a/r) n x f_t, N, the torque over the radius.
+struct alignas(64) ForceRow {
+  double force[3];
+  double unused_force;
+  double turn[3];
+  double unused_turn;
+};
+
+/// Normal damping forces alone, for the ledger.
+struct alignas(32) DampingRow {
+  double force[3];
+  double unused;
+};
+
+/// Two sorted indices closer than their radii and the skin; first < second.
+struct alignas(8) CandidatePair {
+  std::uint32_t first;
+  std::uint32_t second;
+};
+
+/// Granules per block: what is swept at a time, pairs first, then motion.
+inline constexpr std::uint32_t block_granules = 512;
+/// Lists are padded to this many entries, whatever the lane count, so that every instruction set walks the same list.
+inline constexpr std::uint32_t list_padding = 8;
+
+} // namespace grandamp::kernels

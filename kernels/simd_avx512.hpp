@@ -1,0 +1,93 @@
+// AVX-512 (F, DQ, VL, BW): eight lanes for the law, rows of four as in AVX2, so that both give the same bits.
+#pragma once
+
+#include "kernels/simd.hpp"
+
+#include <immintrin.h>
+#include <xsimd/xsimd.hpp>
+
+// GCC 12 takes the undefined pass-through operands inside its own AVX-512 header for a mistake of ours.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+
+namespace grandamp::kernels {
+
+struct Avx512 {
+  using Vector = xsimd::batch<double, xsimd::avx512dq>;
+  using Row = xsimd::batch<double, xsimd::fma3<xsimd::avx2>>;
+  static constexpr int width = 8;
+
+  GRANDAMP_INLINE Vector load(const double* p) { return _mm512_loadu_pd(p); }
+  GRANDAMP_INLINE void store(double* p, Vector v) { _mm512_storeu_pd(p, v); }
+  GRANDAMP_INLINE Vector broadcast(double x) { return _mm512_set1_pd(x); }
+  // xsimd 8.1 does not fuse on AVX-512.
+  GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return _mm512_fmadd_pd(a, b, c); }
+  GRANDAMP_INLINE Vector fnma(Vector a, Vector b, Vector c) { return _mm512_fnmadd_pd(a, b, c); }
+  GRANDAMP_INLINE Vector sqrt(Vector a) { return xsimd::sqrt(a); }
+  GRANDAMP_INLINE Vector max(Vector a, Vector b) { return xsimd::max(a, b); }
+  GRANDAMP_INLINE Vector min(Vector a, Vector b) { return xsimd::min(a, b); }
+  GRANDAMP_INLINE Vector abs(Vector a) { return xsimd::abs(a); }
+  GRANDAMP_INLINE unsigned less(Vector a, Vector b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+
+  GRANDAMP_INLINE Row row_load(const double* p) { return _mm256_load_pd(p); }
+  GRANDAMP_INLINE void row_store(double* p, Row r) { _mm256_store_pd(p, r); }
+  GRANDAMP_INLINE Row row_broadcast(double x) { return _mm256_set1_pd(x); }
+  GRANDAMP_INLINE Row row_set(double a, double b, double c, double d) { return _mm256_setr_pd(a, b, c, d); }
+  GRANDAMP_INLINE Row row_fma(Row a, Row b, Row c) { return xsimd::fma(a, b, c); }
+  GRANDAMP_INLINE Row row_fnma(Row a, Row b, Row c) { return xsimd::fnma(a, b, c); }
+
+  GRANDAMP_INLINE void columns(const Row (&r)[8], Vector& a, Vector& b, Vector& c, Vector& d) {
+    const __m512d r04 = joined(r[0], r[4]), r15 = joined(r[1], r[5]);
+    const __m512d r26 = joined(r[2], r[6]), r37 = joined(r[3], r[7]);
+    const __m512d ac01 = _mm512_unpacklo_pd(r04, r15), bd01 = _mm512_unpackhi_pd(r04, r15);
+    const __m512d ac23 = _mm512_unpacklo_pd(r26, r37), bd23 = _mm512_unpackhi_pd(r26, r37);
+    const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+    const __m512i high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    a = _mm512_permutex2var_pd(ac01, low, ac23);
+    b = _mm512_permutex2var_pd(bd01, low, bd23);
+    c = _mm512_permutex2var_pd(ac01, high, ac23);
+    d = _mm512_permutex2var_pd(bd01, high, bd23);
+  }
+  GRANDAMP_INLINE void rows(Vector a, Vector b, Vector c, Vector d, Row (&r)[8]) {
+    const __m512d ab_low = _mm512_unpacklo_pd(a, b), ab_high = _mm512_unpackhi_pd(a, b); // rows 0 2 4 6 | 1 3 5 7
+    const __m512d cd_low = _mm512_unpacklo_pd(c, d), cd_high = _mm512_unpackhi_pd(c, d);
+    const __m512i first = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+    const __m512i second = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    const __m512d r04 = _mm512_permutex2var_pd(ab_low, first, cd_low);
+    const __m512d r26 = _mm512_permutex2var_pd(ab_low, second, cd_low);
+    const __m512d r15 = _mm512_permutex2var_pd(ab_high, first, cd_high);
+    const __m512d r37 = _mm512_permutex2var_pd(ab_high, second, cd_high);
+    r[0] = _mm512_castpd512_pd256(r04);
+    r[1] = _mm512_castpd512_pd256(r15);
+    r[2] = _mm512_castpd512_pd256(r26);
+    r[3] = _mm512_castpd512_pd256(r37);
+    r[4] = _mm512_extractf64x4_pd(r04, 1);
+    r[5] = _mm512_extractf64x4_pd(r15, 1);
+    r[6] = _mm512_extractf64x4_pd(r26, 1);
+    r[7] = _mm512_extractf64x4_pd(r37, 1);
+  }
+
+  GRANDAMP_INLINE unsigned select(const CandidatePair* from, unsigned mask, CandidatePair* to) {
+    const __m512i pairs = _mm512_loadu_si512(from);
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), pairs));
+    return static_cast<unsigned>(__builtin_popcount(mask));
+  }
+  GRANDAMP_INLINE unsigned select(const std::uint32_t* from, unsigned mask, std::uint32_t* to) {
+    const __m256i values = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), values));
+    return static_cast<unsigned>(__builtin_popcount(mask));
+  }
+  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, CandidatePair* to) {
+    const __m512i lanes =
+        _mm512_setr_epi64(0, 1LL << 32, 2LL << 32, 3LL << 32, 4LL << 32, 5LL << 32, 6LL << 32, 7LL << 32);
+    const __m512i partners = _mm512_add_epi64(_mm512_set1_epi64(static_cast<long long>(base) << 32 | first), lanes);
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), partners));
+    return static_cast<unsigned>(__builtin_popcount(mask));
+  }
+
+private:
+  GRANDAMP_INLINE __m512d joined(Row low, Row high) { return _mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1); }
+};
+
+} // namespace grandamp::kernels

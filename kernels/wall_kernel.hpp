@@ -1,0 +1,145 @@
+// Granule against a wall of the enclosure, which stands still in its own frame: a plane, or the side of a cylinder.
+#pragma once
+
+#include "kernels/arguments.hpp"
+#include "kernels/pair_kernel.hpp"
+
+namespace grandamp::kernels {
+
+enum class Surface { plane, side };
+
+template <class S, ContactEffects E, Surface shape> struct WallLoop {
+  using Vector = typename S::Vector;
+  using Row = typename S::Row;
+  static constexpr int width = S::width;
+
+  const WallArguments& a;
+  Vector max_overlap = S::broadcast(0.0);
+  Vector max_closing = S::broadcast(0.0);
+  Row total_force = S::row_broadcast(0.0);
+
+  void positions(const std::uint32_t* list, Vector& x, Vector& y, Vector& z, Vector& radius) const {
+    Row rows[width];
+    for (int lane = 0; lane < width; ++lane) rows[lane] = S::row_load(&a.granules.position[list[lane]].x);
+    S::columns(rows, x, y, z, radius);
+  }
+
+  /// Overlap with the wall; n towards it.
+  Vector overlap(const std::uint32_t* list, Vector& nx, Vector& ny, Vector& nz, Vector& radius) const {
+    Vector x, y, z;
+    positions(list, x, y, z, radius);
+    const WallSurface& s = a.surface;
+    if constexpr (shape == Surface::plane) {
+      nx = S::broadcast(s.normal[0]);
+      ny = S::broadcast(s.normal[1]);
+      nz = S::broadcast(s.normal[2]);
+      return S::fma(z, nz, S::fma(y, ny, x * nx)) - S::broadcast(s.offset) + radius;
+    } else {
+      const Vector px = (x - S::broadcast(s.centre[0])) * S::broadcast(s.across[0]);
+      const Vector py = (y - S::broadcast(s.centre[1])) * S::broadcast(s.across[1]);
+      const Vector pz = (z - S::broadcast(s.centre[2])) * S::broadcast(s.across[2]);
+      const Vector off_axis = S::sqrt(S::fma(pz, pz, S::fma(py, py, px * px)));
+      const Vector inverse = S::broadcast(1.0) / off_axis;
+      nx = px * inverse;
+      ny = py * inverse;
+      nz = pz * inverse;
+      return off_axis - S::broadcast(s.radius) + radius;
+    }
+  }
+
+  std::size_t touching() const {
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < a.count; k += width) {
+      Vector nx, ny, nz, radius;
+      const Vector d = overlap(a.list + k, nx, ny, nz, radius);
+      unsigned mask = S::less(S::broadcast(0.0), d);
+      const std::size_t left = a.count - k;
+      if (left < width) mask &= (1U << left) - 1U; // the padding touches nothing
+      n += S::select(a.list + k, mask, a.touching + n);
+    }
+    return n;
+  }
+
+  void contacts(const std::uint32_t* list, unsigned lanes, WallResult& result) {
+    ContactGeometry<S> c;
+    c.overlap = S::max(overlap(list, c.nx, c.ny, c.nz, c.radius), S::broadcast(0.0));
+
+    const MotionRow* motion = a.granules.predicted;
+    Row rows[width];
+    Vector inverse_mass, inverse_radius;
+    for (int lane = 0; lane < width; ++lane) rows[lane] = S::row_load(motion[list[lane]].velocity);
+    S::columns(rows, c.vx, c.vy, c.vz, inverse_mass);
+    for (int lane = 0; lane < width; ++lane) rows[lane] = S::row_load(motion[list[lane]].surface_spin);
+    S::columns(rows, c.sx, c.sy, c.sz, inverse_radius);
+
+    const Vector one = S::broadcast(1.0);
+    c.lever = S::fnma(c.overlap, inverse_radius, one);
+    const Vector along = S::fma(c.nz, S::broadcast(a.direction[2]),
+                                S::fma(c.ny, S::broadcast(a.direction[1]), c.nx * S::broadcast(a.direction[0])));
+    c.mass = one / S::fma(along * along, S::broadcast(a.enclosure_inverse_mass), inverse_mass);
+    c.friction_mass = one / (inverse_mass + S::broadcast(a.friction_inverse_mass));
+
+    LawVectors<S> law;
+    if constexpr (E.variety == Variety::materials)
+      law = gathered_laws<S>(a.laws, [&](int lane) { return a.granules.population[list[lane]]; });
+    else
+      law = common_law<S>(a.law);
+
+    const ContactForces<S> f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap));
+    max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
+    max_closing = S::max(max_closing, f.closing);
+    if constexpr (E.energies()) {
+      add_in_order<S>(f.elastic, lanes, result.elastic);
+      result.contacts += lanes;
+    }
+    add_rows(list, lanes, c, f);
+  }
+
+  void add_rows(const std::uint32_t* list, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
+    const Vector zero = S::broadcast(0.0);
+    Row forces[width], turns[width];
+    S::rows(f.fx, f.fy, f.fz, zero, forces);
+    if constexpr (E.rotates()) S::rows(f.tx, f.ty, f.tz, zero, turns);
+    for (unsigned lane = 0; lane < lanes; ++lane) {
+      ForceRow& i = a.granules.force[list[lane]];
+      S::row_store(i.force, S::row_load(i.force) + forces[lane]);
+      total_force = total_force + forces[lane];
+      if constexpr (E.rotates()) S::row_store(i.turn, S::row_load(i.turn) + turns[lane]);
+    }
+    if constexpr (E.ledger() && E.damped()) {
+      Row damping[width];
+      S::rows((zero - f.damping) * c.nx, (zero - f.damping) * c.ny, (zero - f.damping) * c.nz, zero, damping);
+      for (unsigned lane = 0; lane < lanes; ++lane) {
+        double* i = a.granules.damping_wall[list[lane]].force;
+        S::row_store(i, S::row_load(i) + damping[lane]);
+      }
+    }
+    if constexpr (E.ledger() && E.rubs()) {
+      Row rubbing[width];
+      S::rows(f.rx, f.ry, f.rz, zero, rubbing);
+      for (unsigned lane = 0; lane < lanes; ++lane) {
+        ForceRow& i = a.granules.friction_wall[list[lane]];
+        S::row_store(i.force, S::row_load(i.force) + rubbing[lane]);
+        if constexpr (E.rotates()) S::row_store(i.turn, S::row_load(i.turn) + turns[lane]);
+      }
+    }
+  }
+};
+
+/// Adds one wall's contact forces to the force rows, and sums them.
+template <class S, ContactEffects E, Surface shape> void wall_kernel(const WallArguments& a, WallResult& result) {
+  WallLoop<S, E, shape> loop{.a = a};
+  const std::size_t n = loop.touching();
+  // The last, partly filled vector repeats its last contact in the lanes that are not used.
+  if (n == 0) return;
+  for (std::size_t k = n; k % list_padding != 0; ++k) a.touching[k] = a.touching[n - 1];
+  for (std::size_t k = 0; k < n; k += S::width)
+    loop.contacts(a.touching + k, static_cast<unsigned>(n - k < S::width ? n - k : S::width), result);
+  result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
+  result.max_closing = largest<S>(loop.max_closing, result.max_closing);
+  alignas(32) double total[4];
+  S::row_store(total, loop.total_force);
+  for (int k = 0; k < 3; ++k) result.force[k] += total[k];
+}
+
+} // namespace grandamp::kernels

@@ -1,0 +1,124 @@
+// A run, step by step. A Simulation is a value without global state: several can live side by side.
+#pragma once
+
+#include "solver/plan.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grandamp {
+
+/// Energies by mechanism since t = 0, J. Losses are positive.
+struct Ledger {
+  double work_in = 0.0;            ///< by the excitation (a force, or a prescribed motion) on the enclosure
+  double structural_damping = 0.0;
+  double normal_granule = 0.0;
+  double normal_wall = 0.0;
+  double friction_granule = 0.0;
+  double friction_wall = 0.0;
+};
+
+/// Energies stored, J.
+struct StoredEnergy {
+  double kinetic = 0.0;       ///< granules, translation and rotation, laboratory frame
+  double gravitational = 0.0; ///< granules, from the laboratory height of the enclosure's origin at x = 0
+  double elastic = 0.0;       ///< contacts
+  double structure = 0.0;     ///< kinetic and spring energy of the host
+};
+
+/// The state at one instant: positions and velocities at the same time.
+struct Sample {
+  double time = 0.0;         ///< s
+  double displacement = 0.0; ///< of the enclosure along its direction, m
+  double velocity = 0.0;     ///< m/s
+  double excitation = 0.0;   ///< force on the structure, N (prescribed motion: 0)
+  double reaction = 0.0;     ///< of the granules on the enclosure along its direction, N
+  StoredEnergy stored;
+  std::int64_t contacts = 0; ///< granule and wall contacts
+  Ledger ledger;             ///< up to this instant; zeros when the ledger is off
+};
+
+/// Granules by id (scene order), in the contract's frames: positions in the enclosure's, velocities in the laboratory's.
+struct GranuleTable {
+  std::vector<Vector3> position;   ///< m
+  std::vector<Vector3> velocity;   ///< m/s
+  std::vector<Vector3> spin;       ///< rad/s
+  std::vector<double> radius;      ///< m
+  std::vector<std::int32_t> population;
+};
+
+struct VerletStatistics {
+  std::int64_t builds = 0;
+  double mean_interval = 0.0;          ///< steps
+  double candidates_per_granule = 0.0; ///< mean over builds
+  double contacts_per_granule = 0.0;   ///< mean over history samples
+  double skin = 0.0;                   ///< in force at the end, m
+  std::int64_t audited = 0;            ///< steps at which the list was compared
+  std::int64_t missed = 0;             ///< contacts that began unlisted, each once
+  std::int64_t missed_pair_steps = 0;  ///< how long, summed
+};
+
+struct GuardStatistics {
+  double max_overlap = 0.0;  ///< over the smaller radius
+  double max_speed = 0.0;    ///< of a granule relative to the enclosure, m/s
+  double max_closing = 0.0;  ///< greatest closing speed met at a contact, m/s
+  std::int64_t escaped = 0;
+};
+
+/// Of the structure's displacement, over the window.
+struct ResponseStatistics {
+  double rms_displacement = 0.0;  ///< about zero, every step, m
+  double peak_displacement = 0.0; ///< largest |x|, m
+  double amplitude = 0.0;         ///< half the peak-to-peak per forcing period (free: per cycle), averaged, m
+  bool steady = false;            ///< the amplitude's trend over the window is below its scatter
+  std::vector<double> cycle_amplitudes;
+};
+
+struct RunOptions {
+  int threads = 0;  ///< 0: chosen
+  std::string isa;  ///< "generic", "avx2", "avx512"; empty: the best this machine runs
+  /// Called now and then while granules are poured, with the simulated time and the mean kinetic energy over m g d.
+  std::function<void(double, double)> pouring_progress;
+};
+
+class Simulation {
+public:
+  /// Places the granules (this may pour them for a while) and prepares the first step.
+  /// Throws SceneError, or GuardError if the packing comes to no rest.
+  Simulation(const Scene& scene, const RunOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  const Plan& plan() const;
+  const std::string& isa() const; ///< of the kernels in use
+  int threads() const;
+  std::int64_t step_number() const; ///< steps done
+  double time() const;              ///< step_number * time_step, s
+  bool finished() const;            ///< step_number == plan().steps
+
+  /// One step. Throws GuardError.
+  void step();
+  /// One step, telling the state that it started from. The granules move by the same bits.
+  Sample step_and_sample();
+  /// The state now; nothing moves.
+  Sample sample();
+  /// Granules now, velocities synchronised with positions; nothing moves.
+  GranuleTable granules();
+
+  VerletStatistics verlet() const;
+  GuardStatistics guards() const;
+  ResponseStatistics response() const; ///< of the steps so far inside the window
+  /// Warnings since the last call (deep overlaps, closing speeds above the estimate), each told once.
+  std::vector<std::string> take_warnings();
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace grandamp
