@@ -1,0 +1,151 @@
+#include "solver/impact_speed.hpp"
+
+#include "solver/enclosure_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+namespace grandamp {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double least = 0.01; // m/s
+
+double norm(const Vector3& a) {
+  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+/// Largest speed of the enclosure without granules over the run, and largest change from its first one, m/s.
+struct EnclosureSpeed {
+  double largest = 0.0;
+  double largest_change = 0.0;
+};
+
+/// Bound on the bare structure's velocity after `time`: the steady amplitude and what is left of the transient, or
+/// (resonance without damping) what the force can have given at most.
+double velocity_bound_after(const Scene& scene, double time) {
+  const Structure& s = *scene.structure;
+  const bool forced = scene.excitation.kind == ExcitationKind::harmonic;
+  const double force =
+      forced ? scene.excitation.force.value_or(s.stiffness * scene.excitation.static_deflection.value_or(0.0)) : 0.0;
+  const double w = 2.0 * pi * scene.excitation.frequency;
+  const double in_phase = s.stiffness - s.mass * w * w, out_of_phase = s.damping * w;
+  const double square = in_phase * in_phase + out_of_phase * out_of_phase;
+  const double natural = std::sqrt(s.stiffness / s.mass);
+  const double at_most =
+      std::hypot(s.velocity, natural * s.displacement) + std::abs(force) / s.mass * scene.time.duration;
+  if (!(square > 0.0)) return at_most;
+  // x = a sin w t + b cos w t in the steady state; the rest of the first energy is the transient's.
+  const double a = force * in_phase / square, b = -force * out_of_phase / square;
+  const double transient = std::hypot(s.velocity - a * w, natural * (s.displacement - b));
+  const double decay = s.damping / (2.0 * s.mass);
+  const double left = decay < natural ? std::exp(-decay * time) : 1.0;
+  return std::min(at_most, std::hypot(a, b) * w + left * transient);
+}
+
+/// The exact solution, looked at 64 times a period: no formula for transient, beat or overdamping is needed. A very
+/// long run is looked at over its first 4096 periods, and bounded from there on.
+EnclosureSpeed bare_enclosure_speed(const Scene& scene) {
+  double rate = scene.excitation.kind == ExcitationKind::none ? 0.0 : scene.excitation.frequency;
+  if (scene.structure) {
+    rate = std::max(rate, std::sqrt(scene.structure->stiffness / scene.structure->mass) / (2.0 * pi));
+    rate = std::max(rate, scene.structure->damping / (4.0 * scene.structure->mass));
+  }
+  const double looked_at = rate > 0.0 ? std::min(scene.time.duration, 4096.0 / rate) : scene.time.duration;
+  const double looks = std::max(64.0, std::ceil(64.0 * rate * looked_at));
+  const EnclosureMotion motion(scene, looked_at / looks);
+  EnclosureState state = motion.start(0.0);
+  EnclosureSpeed speed{std::abs(motion.initial_velocity()), 0.0};
+  for (std::int64_t n = 0; n <= static_cast<std::int64_t>(looks); ++n) {
+    const double velocity = motion.advance(state, n, 0.0).velocity;
+    speed.largest = std::max(speed.largest, std::abs(velocity));
+    speed.largest_change = std::max(speed.largest_change, std::abs(velocity - motion.initial_velocity()));
+  }
+  if (scene.structure && looked_at < scene.time.duration) {
+    const double later = velocity_bound_after(scene, looked_at);
+    speed.largest = std::max(speed.largest, later);
+    speed.largest_change = std::max(speed.largest_change, later + std::abs(motion.initial_velocity()));
+  }
+  return speed;
+}
+
+/// Largest speeds of granules at t = 0, in the laboratory and relative to the enclosure, m/s.
+struct FirstSpeed {
+  double laboratory = 0.0;
+  double relative = 0.0;
+};
+
+FirstSpeed first_speed(const Scene& scene) {
+  const EnclosureMotion motion(scene, 1.0); // only for how the enclosure starts
+  const Vector3& direction = motion.direction();
+  const double enclosure = motion.initial_velocity();
+  FirstSpeed speed;
+  for (const Population& population : scene.populations) {
+    if (population.count == 0) continue;
+    if (population.velocities.empty()) {
+      speed.laboratory = std::max(speed.laboratory, population.speed);
+      speed.relative = std::max(speed.relative, population.speed + std::abs(enclosure));
+    }
+    for (const Vector3& v : population.velocities) {
+      const Vector3 relative{v[0] - enclosure * direction[0], v[1] - enclosure * direction[1],
+                             v[2] - enclosure * direction[2]};
+      speed.laboratory = std::max(speed.laboratory, norm(v));
+      speed.relative = std::max(speed.relative, norm(relative));
+    }
+  }
+  return speed;
+}
+
+/// How far a granule may fall, m: the enclosure's extent along gravity less a bed packed to 60 %, a diameter at least.
+double free_height(const Scene& scene) {
+  const double gravity = norm(scene.gravity);
+  double extent = 0.0, volume = 0.0, solid = 0.0, diameter = 0.0;
+  const auto along = [&](std::size_t k) { return std::abs(scene.gravity[k]) / gravity; };
+  if (scene.enclosure.shape == EnclosureShape::box) {
+    const Vector3& l = scene.enclosure.size;
+    for (std::size_t k = 0; k < 3; ++k) extent += l[k] * along(k);
+    volume = l[0] * l[1] * l[2];
+  } else {
+    const double axial = along(static_cast<std::size_t>(scene.enclosure.axis));
+    extent = scene.enclosure.height * axial + scene.enclosure.diameter * std::sqrt(std::max(0.0, 1.0 - axial * axial));
+    volume = 0.25 * pi * scene.enclosure.diameter * scene.enclosure.diameter * scene.enclosure.height;
+  }
+  for (const Population& population : scene.populations)
+    for (std::size_t i = 0; i < (population.radii.empty() ? 1 : population.count); ++i) {
+      const double radius = population.radii.empty() ? population.radius : population.radii[i];
+      const double how_many = population.radii.empty() ? static_cast<double>(population.count) : 1.0;
+      solid += how_many * 4.0 / 3.0 * pi * radius * radius * radius;
+      if (how_many > 0.0) diameter = std::max(diameter, 2.0 * radius);
+    }
+  return std::max(diameter, extent * (1.0 - std::min(1.0, solid / (0.6 * volume))));
+}
+
+} // namespace
+
+ImpactSpeed estimate_impact_speed(const Scene& scene) {
+  const EnclosureSpeed enclosure = bare_enclosure_speed(scene);
+  const FirstSpeed granules = first_speed(scene);
+  // Two granules may meet head on, each as fast as the fastest; and a wall that moves at w throws a granule at up to 2
+  // w. Seen from the laboratory or from the enclosure at its start, whichever shows less: a common motion is no impact.
+  const double laboratory = granules.laboratory + enclosure.largest;
+  const double relative = granules.relative + enclosure.largest_change;
+  const double thrown = 2.0 * std::min(laboratory, relative);
+  std::string reason =
+      laboratory <= relative
+          ? fmt::format("twice the granules' first {:.3g} m/s and the bare enclosure's {:.3g} m/s", granules.laboratory,
+                        enclosure.largest)
+          : fmt::format("twice the granules' first {:.3g} m/s against the enclosure and its change of {:.3g} m/s",
+                        granules.relative, enclosure.largest_change);
+  // What falls gains the square of its speed.
+  const double gravity = norm(scene.gravity);
+  const double fall = gravity > 0.0 ? std::sqrt(2.0 * gravity * free_height(scene)) : 0.0;
+  if (fall > 0.0) reason += fmt::format(", with a fall's {:.3g} m/s", fall);
+  const double speed = std::hypot(thrown, fall);
+  if (speed >= least) return {speed, reason};
+  return {least, "next to nothing in the scene moves: the least taken"};
+}
+
+} // namespace grandamp

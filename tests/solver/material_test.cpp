@@ -1,0 +1,144 @@
+// The constants of contacts, from what a scene gives.
+#include "solver/errors.hpp"
+#include "solver/material.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <doctest/doctest.h>
+#include <numbers>
+
+using namespace grandamp;
+
+namespace {
+
+Population population(double radius, double young, double poisson) {
+  Population p;
+  p.count = 3;
+  p.radius = radius;
+  p.mass = 1.0e-5;
+  p.young = young;
+  p.poisson = poisson;
+  return p;
+}
+
+Contact losses() {
+  Contact contact;
+  contact.granule.restitution = 0.9;
+  contact.granule.friction = 0.5;
+  return contact;
+}
+
+std::vector<std::string> missing(const Scene& scene) {
+  std::vector<std::string> keys;
+  try {
+    make_contact_table(scene);
+  } catch (const SceneError& error) {
+    for (const Problem& problem : error.problems()) keys.push_back(problem.key);
+  }
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+} // namespace
+
+TEST_CASE("alpha of a restitution and its values in the paper") {
+  CHECK(tsuji_alpha(1.0) == 0.0);
+  CHECK_FALSE(std::signbit(tsuji_alpha(1.0)));
+  CHECK(tsuji_alpha(0.89) == doctest::Approx(0.0829).epsilon(1e-3));
+  CHECK(tsuji_alpha(0.8974) == doctest::Approx(0.077).epsilon(1e-3));
+  CHECK(tsuji_alpha(1e-300) < std::sqrt(5.0));
+  for (const double bad : {0.0, -0.1, 1.0001, std::nan("")}) CHECK_THROWS_AS(tsuji_alpha(bad), SceneError);
+}
+
+TEST_CASE("alpha gives its restitution in the damped Hertz contact") {
+  // d'' = -d^1.5 - alpha d^0.25 d' with unit mass and stiffness: the rebound's speed against the impact's.
+  for (const double e : {0.05, 0.3, 0.5, 0.89, 1.0}) {
+    const double alpha = tsuji_alpha(e), dt = 2.0e-5;
+    double x = 0.0, v = 1.0;
+    const auto force = [&](double at, double speed) {
+      return -std::pow(std::max(at, 0.0), 1.5) - alpha * std::pow(std::max(at, 0.0), 0.25) * speed;
+    };
+    for (;;) {
+      const double v1 = v + 0.5 * dt * force(x, v), x1 = x + 0.5 * dt * v;
+      const double v2 = v + dt * force(x1, v1), x2 = x + dt * v1;
+      x = x2;
+      v = v2;
+      if (x <= 0.0) break;
+    }
+    CHECK(-v == doctest::Approx(e).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("a given stiffness holds for its reference radius and scales with the root of the radius") {
+  Scene scene;
+  scene.populations = {population(1.5e-3, 1.0, 0.0), population(6.0e-3, 1.0, 0.0)};
+  scene.contact = losses();
+  scene.contact.granule.stiffness = 1.0e7;
+  scene.contact.granule.reference_radius = 3.0e-3;
+  scene.contact.wall = scene.contact.granule;
+  scene.contact.wall->stiffness = 1.3e7;
+  const ContactTable table = make_contact_table(scene);
+  const auto pair = [&](double a, double b) {
+    return table.between(0, 1).stiffness_coefficient * std::sqrt(a * b / (a + b));
+  };
+  CHECK(pair(3.0e-3, 3.0e-3) == doctest::Approx(1.0e7).epsilon(1e-14));
+  CHECK(pair(1.5e-3, 1.5e-3) == doctest::Approx(1.0e7 * std::sqrt(0.5)).epsilon(1e-14));
+  CHECK(pair(1.5e-3, 6.0e-3) == doctest::Approx(1.0e7 * std::sqrt(2.0 * 1.2e-3 / 3.0e-3)).epsilon(1e-14));
+  CHECK(table.wall[0].stiffness_coefficient * std::sqrt(1.5e-3) ==
+        doctest::Approx(1.3e7 * std::sqrt(0.5)).epsilon(1e-14));
+  CHECK(table.wall[0].alpha == tsuji_alpha(0.9));
+  // Left out: the flat wall of the same material is sqrt(2) stiffer than a pair of equals.
+  scene.contact.wall.reset();
+  const ContactTable same = make_contact_table(scene);
+  CHECK(same.wall[1].stiffness_coefficient == same.between(1, 1).stiffness_coefficient);
+  CHECK(same.wall[1] == same.between(1, 1));
+}
+
+TEST_CASE("Hertz from moduli - equals unlikes and a rigid partner by the corrected equation") {
+  Scene scene;
+  scene.populations = {population(1.0e-3, 3.0e9, 0.35), population(1.0e-3, 2.0e11, 0.3)};
+  scene.contact = losses();
+  ContactTable table = make_contact_table(scene);
+  CHECK(table.between(0, 0).stiffness_coefficient ==
+        doctest::Approx(4.0 / 3.0 * 3.0e9 / (2.0 * (1.0 - 0.35 * 0.35))).epsilon(1e-14));
+  const double ei = 3.0e9, ej = 2.0e11, ni = 0.35, nj = 0.3;
+  CHECK(table.between(0, 1).stiffness_coefficient ==
+        doctest::Approx(4.0 / 3.0 * ei * ej / ((1 - ni * ni) * ej + (1 - nj * nj) * ei)).epsilon(1e-14));
+  CHECK(table.between(0, 1) == table.between(1, 0));
+  CHECK(table.wall[0] == table.between(0, 0));
+  scene.contact.wall = scene.contact.granule;
+  scene.contact.wall->young = 1.0e30; // rigid
+  scene.contact.wall->poisson = 0.1;
+  table = make_contact_table(scene);
+  CHECK(table.wall[0].stiffness_coefficient == doctest::Approx(4.0 / 3.0 * 3.0e9 / (1.0 - 0.35 * 0.35)).epsilon(1e-12));
+}
+
+TEST_CASE("constants that are missing or out of range are named all at once") {
+  Scene scene;
+  scene.populations = {population(1.0e-3, 1.0e9, 0.3)};
+  scene.populations[0].young.reset();
+  scene.populations[0].poisson.reset();
+  CHECK(missing(scene) == std::vector<std::string>{"contact.granule.friction", "contact.granule.restitution",
+                                                   "granules.0.poisson", "granules.0.young"});
+  scene.contact = losses();
+  scene.contact.granule.stiffness = 1.0e7;
+  CHECK(missing(scene) == std::vector<std::string>{"contact.granule.reference_radius"});
+  scene.contact.granule.reference_radius = 1.0e-3;
+  CHECK(missing(scene).empty());
+  scene.contact.wall = ContactConstants{};
+  CHECK(missing(scene) == std::vector<std::string>{"contact.wall.friction", "contact.wall.poisson",
+                                                   "contact.wall.restitution", "contact.wall.young",
+                                                   "granules.0.poisson", "granules.0.young"});
+  scene.contact.wall.reset();
+  scene.contact.granule.restitution = 1.2;
+  CHECK(missing(scene) == std::vector<std::string>{"contact.granule.restitution"});
+  scene.contact.damping = NormalDamping::linear;
+  CHECK(missing(scene) == std::vector<std::string>{"contact.granule.normal_damping"});
+  scene.contact.damping = NormalDamping::none;
+  scene.contact.friction = FrictionLaw::none;
+  scene.contact.granule.friction.reset();
+  CHECK(missing(scene).empty());
+  scene.populations.clear();
+  scene.contact = Contact{};
+  CHECK(missing(scene).empty()); // the bare structure needs none
+}
