@@ -1,0 +1,29 @@
+#include "io/commands/commands.hpp"
+#include "io/plan_report.hpp"
+#include "io/run.hpp"
+#include "kernels/dispatch.hpp"
+#include "solver/packing.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace grandamp {
+
+int check_command(const CheckArguments& arguments) {
+  require_isa(arguments.isa);
+  const SceneDocument document = read_scene(arguments.scene, arguments.overrides);
+  Plan plan = make_plan(document.scene);
+  place_granules(plan); // what overlaps or does not fit shows only here
+  plan.notes.insert(plan.notes.begin(), document.notes.begin(), document.notes.end());
+  if (!plan.notes.empty()) spdlog::info("{}", format_problems(arguments.scene, plan.notes));
+
+  const std::string isa = arguments.isa.empty() ? kernels::name(kernels::best_available()) : arguments.isa;
+  if (arguments.json) {
+    fmt::print("{}", plan_json(plan, isa, arguments.threads));
+  } else if (!arguments.quiet) {
+    fmt::print("{}", plan_text(plan, isa, arguments.threads));
+  }
+  return exit_done;
+}
+
+} // namespace grandamp

@@ -1,0 +1,161 @@
+#include "io/commands/commands.hpp"
+#include "io/run.hpp"
+#include "io/version.hpp"
+#include "kernels/dispatch.hpp"
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <functional>
+#include <new>
+
+namespace grandamp {
+namespace {
+
+void log_to_standard_error() {
+  auto logger = std::make_shared<spdlog::logger>("grandamp", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+  logger->set_pattern("%^%l%$: %v");
+  spdlog::set_default_logger(std::move(logger));
+}
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
+  command.add_option("--set", overrides, "Override a scene key, dotted; list items by index: granules.0.count=100")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_threads(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "Threads; default: chosen by the number of granules")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+}
+
+void add_isa(CLI::App& command, std::string& isa) {
+  command.add_option("--isa", isa, "Instruction set of the kernels; default: the best of this machine")
+      ->check(CLI::IsMember({"generic", "avx2", "avx512"}));
+}
+
+void add_quiet(CLI::App& command, bool& quiet) {
+  command.add_flag("--quiet", quiet, "Only warnings and errors");
+}
+
+void refuse(CLI::App& app, const std::string& command, const std::string& what) {
+  CLI::App* const refused = app.add_subcommand(command, what + " (not yet)");
+  refused->allow_extras();
+  refused->callback([command] { throw UsageError("`grandamp " + command + "`: not yet in this version"); });
+}
+
+/// Runs the command that was typed and turns what it throws into messages and exit statuses.
+int guarded(const std::filesystem::path& scene, const std::function<int()>& command) {
+  try {
+    return command();
+  } catch (const SceneError& error) {
+    spdlog::error("{}", format_problems(scene, error.problems()));
+    return exit_usage;
+  } catch (const UsageError& error) {
+    spdlog::error("{}", error.what());
+    return exit_usage;
+  } catch (const GuardError& error) {
+    spdlog::error("{}", error.what());
+    return exit_guard;
+  } catch (const FileError& error) {
+    spdlog::error("{}", error.what());
+    return exit_file;
+  } catch (const std::filesystem::filesystem_error& error) {
+    spdlog::error("{}", error.what());
+    return exit_file;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("out of memory; `grandamp check` tells how much the scene needs");
+    return exit_guard;
+  }
+}
+
+} // namespace
+
+void require_isa(const std::string& isa) {
+  using kernels::InstructionSet;
+  for (const InstructionSet set : {InstructionSet::generic, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (isa == kernels::name(set) && !kernels::available(set)) {
+      throw UsageError("--isa " + isa + ": not to be had here; the best is " +
+                       kernels::name(kernels::best_available()) + " (see --version)");
+    }
+  }
+}
+
+int command_line(int argc, char** argv) {
+  log_to_standard_error();
+  std::signal(SIGXFSZ, SIG_IGN); // a file that grows beyond a limit is then an error with a reason, not a death
+
+  CLI::App app("Discrete-element simulation of granular dampers", "grandamp");
+  app.require_subcommand(1);
+  app.set_version_flag(
+      "--version", [] { return version_report(); }, "Version, compiler, instruction sets, libraries");
+
+  RunArguments run;
+  CLI::App* const run_app = app.add_subcommand("run", "Run a scene");
+  run_app->add_option("SCENE", run.scene, "Scene file, TOML")->required();
+  run_app->add_option("-o", run.folder, "Folder of the results; default: the scene's stem")->type_name("DIR");
+  add_overrides(*run_app, run.overrides);
+  add_threads(*run_app, run.threads);
+  add_isa(*run_app, run.isa);
+  run_app->add_flag("--force", run.force, "Replace the run that the folder holds");
+  add_quiet(*run_app, run.quiet);
+  run_app->add_flag("--json", run.json, "Print the summary on standard output");
+  run_app->add_flag_callback(
+      "--profile", [] { throw UsageError("--profile: not yet in this version"); }, "(not yet)");
+  run_app
+      ->add_option_function<double>(
+          "--max-wall",
+          [](double) { throw UsageError("--max-wall: not yet in this version, which has no checkpoints"); },
+          "(not yet)")
+      ->type_name("SECONDS");
+
+  CheckArguments check;
+  CLI::App* const check_app = app.add_subcommand("check", "Validate a scene and tell what would run; runs nothing");
+  check_app->add_option("SCENE", check.scene, "Scene file, TOML")->required();
+  add_overrides(*check_app, check.overrides);
+  add_threads(*check_app, check.threads);
+  add_isa(*check_app, check.isa);
+  add_quiet(*check_app, check.quiet);
+  check_app->add_flag("--json", check.json, "Print the plan as JSON on standard output");
+
+  ExportArguments exported;
+  bool export_quiet = false;
+  CLI::App* const export_app = app.add_subcommand("export", "Histories or granules of a run as CSV");
+  export_app->add_option("DIR", exported.folder, "Folder of a run")->required();
+  export_app->add_option("WHAT", exported.what, "history or granules")
+      ->required()
+      ->check(CLI::IsMember({"history", "granules"}));
+  export_app->add_option("--time", exported.time, "Of granules, s; default: the end")->type_name("T");
+  export_app->add_option("-o", exported.file, "The CSV file")->type_name("FILE")->required();
+  add_quiet(*export_app, export_quiet);
+
+  refuse(app, "resume", "Go on from a checkpoint");
+  refuse(app, "sweep", "A case per point of a grid");
+  refuse(app, "optimise", "The best design");
+  refuse(app, "study", "What accuracy costs in time");
+  refuse(app, "report", "A page with pictures of a run");
+  refuse(app, "inspect", "What a results file holds");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) { // --help, --version
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    spdlog::error("{} (see grandamp --help)", error.what());
+    return exit_usage;
+  } catch (const UsageError& error) {
+    spdlog::error("{}", error.what());
+    return exit_usage;
+  }
+  if (run.quiet || check.quiet || export_quiet) spdlog::set_level(spdlog::level::warn);
+
+  if (run_app->parsed()) return guarded(run.scene, [&run] { return run_command(run); });
+  if (check_app->parsed()) return guarded(check.scene, [&check] { return check_command(check); });
+  return guarded({}, [&exported] { return export_command(exported); });
+}
+
+} // namespace grandamp

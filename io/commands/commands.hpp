@@ -1,0 +1,51 @@
+// The commands of the program: each takes what was typed and returns the exit status.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grandamp {
+
+/// The exit statuses of the program.
+enum ExitStatus { exit_done = 0, exit_usage = 2, exit_guard = 3, exit_file = 4, exit_interrupted = 130 };
+
+struct RunArguments {
+  std::filesystem::path scene;
+  std::filesystem::path folder;       ///< empty: the scene's stem
+  std::vector<std::string> overrides; ///< KEY=VALUE
+  int threads = 0;                    ///< 0: chosen
+  std::string isa;                    ///< empty: the best
+  bool force = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+struct CheckArguments {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;
+  int threads = 0;
+  std::string isa;
+  bool quiet = false;
+  bool json = false;
+};
+
+struct ExportArguments {
+  std::filesystem::path folder;
+  std::string what;           ///< "history" or "granules"
+  std::optional<double> time; ///< s
+  std::filesystem::path file;
+};
+
+int run_command(const RunArguments& arguments);
+int check_command(const CheckArguments& arguments);
+int export_command(const ExportArguments& arguments);
+
+/// Throws UsageError unless this machine runs the instruction set of that name; empty: none asked for.
+void require_isa(const std::string& isa);
+
+/// The whole program but for `main`.
+int command_line(int argc, char** argv);
+
+} // namespace grandamp

@@ -1,0 +1,29 @@
+// The folder of a run: what it holds, and what a new run may replace in it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace grandamp {
+
+class RunFolder {
+public:
+  /// Makes the folder if need be and makes sure that it can be written to; files in it stay as they are.
+  /// Throws UsageError if it holds a run and `force` is false, FileError if it cannot be made or written to.
+  RunFolder(std::filesystem::path folder, bool force);
+
+  std::filesystem::path scene() const { return folder_ / "scene.toml"; }
+  std::filesystem::path summary() const { return folder_ / "summary.json"; }
+  std::filesystem::path results() const { return folder_ / "results.h5"; }
+
+  /// Removes the files of an earlier run, and nothing else, and writes scene.toml. Throws FileError.
+  void begin(const std::string& scene_text);
+  /// Removes the folder again if it was made for this run and is empty.
+  void abandon() noexcept;
+
+private:
+  std::filesystem::path folder_;
+  bool made_ = false;
+};
+
+} // namespace grandamp
