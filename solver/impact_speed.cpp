@@ -1,6 +1,7 @@
 #include "solver/impact_speed.hpp"
 
 #include "solver/enclosure_motion.hpp"
+#include "solver/measures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +15,6 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double least = 0.01; // m/s
 
-double norm(const Vector3& a) {
-  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
-
 /// Largest speed of the enclosure without granules over the run, and largest change from its first one, m/s.
 struct EnclosureSpeed {
   double largest = 0.0;
@@ -28,9 +25,7 @@ struct EnclosureSpeed {
 /// (resonance without damping) what the force can have given at most.
 double velocity_bound_after(const Scene& scene, double time) {
   const Structure& s = *scene.structure;
-  const bool forced = scene.excitation.kind == ExcitationKind::harmonic;
-  const double force =
-      forced ? scene.excitation.force.value_or(s.stiffness * scene.excitation.static_deflection.value_or(0.0)) : 0.0;
+  const double force = harmonic_force(scene);
   const double w = 2.0 * pi * scene.excitation.frequency;
   const double in_phase = s.stiffness - s.mass * w * w, out_of_phase = s.damping * w;
   const double square = in_phase * in_phase + out_of_phase * out_of_phase;
@@ -99,28 +94,12 @@ FirstSpeed first_speed(const Scene& scene) {
   return speed;
 }
 
-/// How far a granule may fall, m: the enclosure's extent along gravity less a bed packed to 60 %, a diameter at least.
+/// How far a granule may fall, m: the enclosure's extent along gravity less a poured bed, a diameter at least.
 double free_height(const Scene& scene) {
   const double gravity = norm(scene.gravity);
-  double extent = 0.0, volume = 0.0, solid = 0.0, diameter = 0.0;
-  const auto along = [&](std::size_t k) { return std::abs(scene.gravity[k]) / gravity; };
-  if (scene.enclosure.shape == EnclosureShape::box) {
-    const Vector3& l = scene.enclosure.size;
-    for (std::size_t k = 0; k < 3; ++k) extent += l[k] * along(k);
-    volume = l[0] * l[1] * l[2];
-  } else {
-    const double axial = along(static_cast<std::size_t>(scene.enclosure.axis));
-    extent = scene.enclosure.height * axial + scene.enclosure.diameter * std::sqrt(std::max(0.0, 1.0 - axial * axial));
-    volume = 0.25 * pi * scene.enclosure.diameter * scene.enclosure.diameter * scene.enclosure.height;
-  }
-  for (const Population& population : scene.populations)
-    for (std::size_t i = 0; i < (population.radii.empty() ? 1 : population.count); ++i) {
-      const double radius = population.radii.empty() ? population.radius : population.radii[i];
-      const double how_many = population.radii.empty() ? static_cast<double>(population.count) : 1.0;
-      solid += how_many * 4.0 / 3.0 * pi * radius * radius * radius;
-      if (how_many > 0.0) diameter = std::max(diameter, 2.0 * radius);
-    }
-  return std::max(diameter, extent * (1.0 - std::min(1.0, solid / (0.6 * volume))));
+  const Vector3 down{scene.gravity[0] / gravity, scene.gravity[1] / gravity, scene.gravity[2] / gravity};
+  const double bed = solid_volume(scene) / (bed_solid_fraction * volume_of(scene.enclosure));
+  return std::max(2.0 * radius_range(scene).largest, extent_along(scene.enclosure, down) * (1.0 - std::min(1.0, bed)));
 }
 
 } // namespace
@@ -133,12 +112,14 @@ ImpactSpeed estimate_impact_speed(const Scene& scene) {
   const double laboratory = granules.laboratory + enclosure.largest;
   const double relative = granules.relative + enclosure.largest_change;
   const double thrown = 2.0 * std::min(laboratory, relative);
-  std::string reason =
-      laboratory <= relative
-          ? fmt::format("twice the granules' first {:.3g} m/s and the bare enclosure's {:.3g} m/s", granules.laboratory,
-                        enclosure.largest)
-          : fmt::format("twice the granules' first {:.3g} m/s against the enclosure and its change of {:.3g} m/s",
-                        granules.relative, enclosure.largest_change);
+  const bool by_laboratory = laboratory <= relative;
+  const double first = by_laboratory ? granules.laboratory : granules.relative;
+  const double moved = by_laboratory ? enclosure.largest : enclosure.largest_change;
+  std::string reason = fmt::format("estimated: twice the bare enclosure's {:.3g} m/s", moved);
+  if (first > 0.0 && moved > 0.0)
+    reason += fmt::format(" and the granules' first {:.3g} m/s", first);
+  else if (first > 0.0)
+    reason = fmt::format("estimated: twice the granules' first {:.3g} m/s", first);
   // What falls gains the square of its speed.
   const double gravity = norm(scene.gravity);
   const double fall = gravity > 0.0 ? std::sqrt(2.0 * gravity * free_height(scene)) : 0.0;

@@ -2,6 +2,7 @@
 
 #include "solver/errors.hpp"
 #include "solver/impact_speed.hpp"
+#include "solver/measures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,12 +16,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
-
-std::size_t granule_count(const Scene& scene) {
-  std::size_t count = 0;
-  for (const Population& population : scene.populations) count += population.count;
-  return count;
-}
 
 /// Some granules of about one radius: none of them is lighter than `mass` or larger than `radius`.
 struct GranuleClass {
@@ -40,22 +35,19 @@ std::vector<GranuleClass> granule_classes(const Scene& scene) {
       classes.push_back({a, population.radius, population.mass});
       continue;
     }
-    const auto radius_of = [&](std::size_t i) {
-      return population.radii.empty() ? population.radius : population.radii[i];
-    };
     double smallest = infinity, largest = 0.0;
     for (std::size_t i = 0; i < population.count; ++i) {
-      smallest = std::min(smallest, radius_of(i));
-      largest = std::max(largest, radius_of(i));
+      smallest = std::min(smallest, radius_of(population, i));
+      largest = std::max(largest, radius_of(population, i));
     }
     constexpr std::size_t bins = 64;
     std::vector<GranuleClass> binned(bins, {a, 0.0, infinity});
     const double width = std::log(largest / smallest) / static_cast<double>(bins);
     for (std::size_t i = 0; i < population.count; ++i) {
-      const double place = width > 0.0 ? std::floor(std::log(radius_of(i) / smallest) / width) : 0.0;
+      const double place = width > 0.0 ? std::floor(std::log(radius_of(population, i) / smallest) / width) : 0.0;
       GranuleClass& bin = binned[static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(bins - 1)))];
-      bin.radius = std::max(bin.radius, radius_of(i));
-      bin.mass = std::min(bin.mass, population.masses.empty() ? population.mass : population.masses[i]);
+      bin.radius = std::max(bin.radius, radius_of(population, i));
+      bin.mass = std::min(bin.mass, mass_of(population, i));
     }
     std::copy_if(binned.begin(), binned.end(), std::back_inserter(classes),
                  [](const GranuleClass& bin) { return bin.radius > 0.0; });
