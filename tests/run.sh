@@ -53,7 +53,8 @@ need() {
   [ "$failed" -eq "$before" ] || finish
 }
 
-build() { cmake --preset "$1" && cmake --build --preset "$1" -j "$jobs"; }
+# build PRESET [OPTION]...
+build() { cmake --preset "$@" && cmake --build --preset "$1" -j "$jobs"; }
 
 # cases NAME BUILD PATTERN: the doctest cases of a build whose names match. All of them must be known to ctest.
 cases() {
@@ -111,7 +112,7 @@ fuzz() {
 need packages install_packages "${test_packages[@]}"
 check layering bash tests/layering/check.sh
 check format format
-need build_release build release
+need build_release build release -DGRANDAMP_TESTS=ON
 cases tests build .
 check package bash tests/package/check.sh build
 if [ "$(uname -m)" = x86_64 ]; then

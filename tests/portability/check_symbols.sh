@@ -5,7 +5,7 @@
 set -uo pipefail
 status=0
 folder=$(find "$1" -type d -path '*grandamp.dir/kernels' | head -n 1)
-weak() { nm --defined-only -f posix "$@" 2>/dev/null | awk '$2 ~ /^[WVu]$/ {print $1}' | sort -u; }
+weak() { nm --defined-only -f posix "$@" 2>/dev/null | awk '$2 == "W" {print $1}' | sort -u; } # W: functions; V, u: data
 
 avx2=$(ls "$folder"/kernels_avx2*.o) && avx512=$(ls "$folder"/kernels_avx512*.o) || exit 1
 # shellcheck disable=SC2086
