@@ -196,7 +196,7 @@ FinalGranules read_final_granules(const std::filesystem::path& path) {
   return granules;
 }
 
-std::string read_scene_text(const std::filesystem::path& path) {
+std::string read_stored_scene(const std::filesystem::path& path) {
   return hdf5::File::open(path).read_text("/scene");
 }
 

@@ -48,7 +48,7 @@ struct FinalGranules {
 /// Reads results.h5. Throws FileError.
 History read_history(const std::filesystem::path& path);
 FinalGranules read_final_granules(const std::filesystem::path& path);
-std::string read_scene_text(const std::filesystem::path& path);
+std::string read_stored_scene(const std::filesystem::path& path);
 
 /// Comma-separated with a header row, 17 significant digits. Throws FileError.
 void export_history(const History& history, const std::filesystem::path& csv);

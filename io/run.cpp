@@ -87,6 +87,15 @@ Simulation prepare(const Scene& scene, const RunSceneOptions& options) {
   return Simulation(scene, run);
 }
 
+/// Faults found by the solver carry keys alone: adds the document's lines.
+template <class Work> auto with_lines(const SceneDocument& document, const Work& work) {
+  try {
+    return work();
+  } catch (const SceneError& error) {
+    throw SceneError(located(document, error.problems()));
+  }
+}
+
 /// The steps of a run and what is recorded on the way.
 class Recorder {
 public:
@@ -199,15 +208,23 @@ private:
 
 } // namespace
 
+Plan make_located_plan(const SceneDocument& document) {
+  Plan plan = with_lines(document, [&] { return make_plan(document.scene); });
+  plan.notes = located(document, std::move(plan.notes));
+  plan.notes.insert(plan.notes.begin(), document.notes.begin(), document.notes.end());
+  return plan;
+}
+
 RunResult run_scene(const SceneDocument& document, const std::filesystem::path& folder,
                     const RunSceneOptions& options) {
-  make_plan(document.scene); // a bad scene must not cost the folder anything
+  const std::vector<Problem> notes = make_located_plan(document).notes; // a bad scene must not cost the folder anything
+  if (options.notes && !notes.empty()) options.notes(notes);
   RunFolder files(folder, options.force);
   RunResult result;
   const Clock::time_point start = Clock::now();
   std::optional<Simulation> prepared;
   try {
-    prepared = prepare(document.scene, options);
+    prepared = with_lines(document, [&] { return prepare(document.scene, options); });
   } catch (const Interrupted&) {
     files.abandon();
     result.status = RunStatus::interrupted;

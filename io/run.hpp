@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace grandamp {
 
@@ -34,6 +35,8 @@ struct RunSceneOptions {
   int threads = 0;    ///< 0: chosen
   std::string isa;    ///< "generic", "avx2", "avx512"; empty: the best this machine runs
   bool force = false; ///< replace the files of a run that the folder holds already
+  /// Told before anything runs what is worth knowing of the scene, if there is anything.
+  std::function<void(const std::vector<Problem>&)> notes;
   /// Told about ten times a second of wall time, and at the end.
   std::function<void(const RunProgress&)> progress;
   /// Told what is worth knowing as the run goes.
@@ -58,5 +61,8 @@ struct RunResult {
 /// Throws SceneError, GuardError (the packing comes to no rest), FileError, UsageError (the folder holds a run).
 RunResult run_scene(const SceneDocument& document, const std::filesystem::path& folder,
                     const RunSceneOptions& options = {});
+
+/// make_plan, with the lines of the document in its notes and in the faults that it throws.
+Plan make_located_plan(const SceneDocument& document);
 
 } // namespace grandamp

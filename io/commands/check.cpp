@@ -5,17 +5,19 @@
 #include "solver/packing.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 namespace grandamp {
 
 int check_command(const CheckArguments& arguments) {
   require_isa(arguments.isa);
   const SceneDocument document = read_scene(arguments.scene, arguments.overrides);
-  Plan plan = make_plan(document.scene);
-  place_granules(plan); // what overlaps or does not fit shows only here
-  plan.notes.insert(plan.notes.begin(), document.notes.begin(), document.notes.end());
-  if (!plan.notes.empty()) spdlog::info("{}", format_problems(arguments.scene, plan.notes));
+  const Plan plan = make_located_plan(document);
+  try {
+    place_granules(plan); // what overlaps or does not fit shows only here
+  } catch (const SceneError& error) {
+    throw SceneError(located(document, error.problems()));
+  }
+  tell_notes(arguments.scene, plan.notes);
 
   const std::string isa = arguments.isa.empty() ? kernels::name(kernels::best_available()) : arguments.isa;
   if (arguments.json) {

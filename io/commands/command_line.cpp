@@ -48,12 +48,21 @@ void refuse(CLI::App& app, const std::string& command, const std::string& what) 
   refused->callback([command] { throw UsageError("`grandamp " + command + "`: not yet in this version"); });
 }
 
+void log_each(spdlog::level::level_enum level, const std::filesystem::path& scene,
+              const std::vector<Problem>& problems) {
+  for (const Problem& problem : problems) {
+    std::string line = format_problems(scene.string(), {problem});
+    while (!line.empty() && line.back() == '\n') line.pop_back();
+    spdlog::log(level, "{}", line);
+  }
+}
+
 /// Runs the command that was typed and turns what it throws into messages and exit statuses.
 int guarded(const std::filesystem::path& scene, const std::function<int()>& command) {
   try {
     return command();
   } catch (const SceneError& error) {
-    spdlog::error("{}", format_problems(scene, error.problems()));
+    tell_faults(scene, error.problems());
     return exit_usage;
   } catch (const UsageError& error) {
     spdlog::error("{}", error.what());
@@ -83,6 +92,14 @@ void require_isa(const std::string& isa) {
                        kernels::name(kernels::best_available()) + " (see --version)");
     }
   }
+}
+
+void tell_faults(const std::filesystem::path& scene, const std::vector<Problem>& faults) {
+  log_each(spdlog::level::err, scene, faults);
+}
+
+void tell_notes(const std::filesystem::path& scene, const std::vector<Problem>& notes) {
+  log_each(spdlog::level::info, scene, notes);
 }
 
 int command_line(int argc, char** argv) {

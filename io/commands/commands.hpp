@@ -1,6 +1,8 @@
 // The commands of the program: each takes what was typed and returns the exit status.
 #pragma once
 
+#include "solver/errors.hpp"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -44,6 +46,10 @@ int export_command(const ExportArguments& arguments);
 
 /// Throws UsageError unless this machine runs the instruction set of that name; empty: none asked for.
 void require_isa(const std::string& isa);
+
+/// Logs each fault, or each note, as a line of its own.
+void tell_faults(const std::filesystem::path& scene, const std::vector<Problem>& faults);
+void tell_notes(const std::filesystem::path& scene, const std::vector<Problem>& notes);
 
 /// The whole program but for `main`.
 int command_line(int argc, char** argv);

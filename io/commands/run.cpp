@@ -64,7 +64,6 @@ int status_of(const RunResult& result) {
 int run_command(const RunArguments& arguments) {
   require_isa(arguments.isa);
   const SceneDocument document = read_scene(arguments.scene, arguments.overrides);
-  if (!document.notes.empty()) spdlog::info("{}", format_problems(arguments.scene, document.notes));
 
   const std::filesystem::path folder = arguments.folder.empty() ? arguments.scene.stem() : arguments.folder;
   ProgressPrinter printer(arguments.quiet ? ProgressPrinter::Style::none : ProgressPrinter::style_here());
@@ -73,6 +72,7 @@ int run_command(const RunArguments& arguments) {
   options.threads = arguments.threads;
   options.isa = arguments.isa;
   options.force = arguments.force;
+  options.notes = [&](const std::vector<Problem>& notes) { tell_notes(arguments.scene, notes); };
   options.stop_requested = [] { return interrupted != 0; };
   options.progress = [&](const RunProgress& progress) {
     wall_time = progress.wall_time;
