@@ -1,5 +1,6 @@
 #include "tests/support/scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -87,6 +88,16 @@ Scene box_scene(double side, double radius) {
   return scene;
 }
 
+void make_lossless(Scene& scene) {
+  scene.contact.damping = NormalDamping::none;
+  scene.contact.friction = FrictionLaw::none;
+  for (ContactConstants* constants : {&scene.contact.granule, &*scene.contact.wall}) {
+    constants->restitution.reset();
+    constants->alpha.reset();
+    constants->friction.reset();
+  }
+}
+
 void add_granule(Scene& scene, const Vector3& position, const Vector3& velocity, const Vector3& spin) {
   Population& population = scene.populations.front();
   population.positions.push_back(position);
@@ -111,6 +122,10 @@ double wall_contact_duration(const Scene& scene, double closing_speed) {
   const ContactConstants& law = *scene.contact.wall;
   return contact_duration(population.mass, *law.stiffness * std::sqrt(population.radius / *law.reference_radius),
                           closing_speed);
+}
+
+double shortest_contact_duration(const Scene& scene, double closing_speed) {
+  return std::min(pair_contact_duration(scene, closing_speed), wall_contact_duration(scene, closing_speed));
 }
 
 Scene two_granules(double radius, double speed, double gap, const Vector3& direction) {

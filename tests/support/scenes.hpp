@@ -17,6 +17,9 @@ Contact acrylic_contact();
 /// An empty box of `side` (m), no gravity, one population ready to take granules, acrylic contacts.
 Scene box_scene(double side, double radius);
 
+/// No damping and no friction.
+void make_lossless(Scene& scene);
+
 /// Adds a granule to the first population.
 void add_granule(Scene& scene, const Vector3& position, const Vector3& velocity = {}, const Vector3& spin = {});
 
@@ -25,6 +28,8 @@ double contact_duration(double mass, double stiffness, double closing_speed);
 /// Of the first population's pairs, or of a granule at the wall.
 double pair_contact_duration(const Scene& scene, double closing_speed);
 double wall_contact_duration(const Scene& scene, double closing_speed);
+/// The shorter of the two.
+double shortest_contact_duration(const Scene& scene, double closing_speed);
 
 /// Two granules on the line along `direction`, `gap` (m) apart, closing at 2 `speed`, in the middle of a wide box.
 Scene two_granules(double radius, double speed, double gap, const Vector3& direction = {1.0, 0.0, 0.0});

@@ -1,0 +1,71 @@
+// The energy balance of Table 5, and its amplitude when the long form is asked for.
+#include "tests/support/runs.hpp"
+#include "tests/support/scenes.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace grandamp;
+using namespace grandamp::test;
+
+namespace {
+
+template <class Run> void check_ledger(const Scene& scene, double tolerance) {
+  Run run(scene);
+  const Sample start = run.sample();
+  double worst = 0.0;
+  const std::int64_t steps = steps_of(scene);
+  for (std::int64_t n = 0; n < steps; ++n) {
+    run.step();
+    if (n > steps / 10 && n % (steps / 20) == 0)
+      worst = std::max(worst, std::abs(ledger_residual(start, run.sample())));
+  }
+  const Sample end = run.sample();
+  MESSAGE("work in ", end.ledger.work_in, " J, structure ", end.ledger.structural_damping, ", normal ",
+          end.ledger.normal_granule, " and ", end.ledger.normal_wall, ", friction ", end.ledger.friction_granule,
+          " and ", end.ledger.friction_wall, "; residual ", 100.0 * ledger_residual(start, end), " %");
+  CHECK(std::abs(ledger_residual(start, end)) < tolerance);
+  CHECK(worst < 2.0 * tolerance);
+  CHECK(end.ledger.normal_granule > 0.0);
+  CHECK(end.ledger.normal_wall > 0.0);
+  CHECK(end.ledger.friction_granule > 0.0);
+  CHECK(end.ledger.friction_wall > 0.0);
+}
+
+} // namespace
+
+TEST_CASE("Table 5 for 0.2 s: the ledger closes within one percent") {
+  Scene scene = table_5(317, 0.2);
+  use_step(scene, shortest_contact_duration(scene, 2.0) / 8.0);
+  check_ledger<SolverRun>(scene, 0.01);
+  if (full_tests()) check_ledger<OracleRun>(scene, 0.01);
+}
+
+TEST_CASE_TEMPLATE("a gas that comes to rest in a shaken box: the ledger closes within one percent", Run, OracleRun,
+                   SolverRun) {
+  for (const Integrator integrator : {Integrator::leapfrog, Integrator::verlet}) {
+    Scene scene = gas(100, 0.022, 1.0, 41);
+    scene.gravity = {0.0, 0.0, -9.81};
+    scene.excitation.kind = ExcitationKind::prescribed;
+    scene.excitation.amplitude = 1.0e-3;
+    scene.excitation.frequency = 60.0;
+    scene.time.integrator = integrator;
+    scene.time.duration = 0.02;
+    use_step(scene, shortest_contact_duration(scene, 2.0) / 8.0);
+    check_ledger<Run>(scene, 0.01);
+  }
+}
+
+TEST_CASE("Table 5 for 7 s: the amplitude within four percent of 4.68 mm, the ledger within one" *
+          doctest::skip(!full_tests())) {
+  Scene scene = table_5(317, 7.0);
+  scene.output.window = {3.5, 7.0};
+  use_step(scene, shortest_contact_duration(scene, 2.0) / 8.0);
+  SolverRun run(scene);
+  const Sample start = run.sample();
+  run_all(run, scene);
+  const ResponseStatistics response = run.simulation().response();
+  MESSAGE("amplitude ", response.amplitude, " m, residual ", ledger_residual(start, run.sample()));
+  CHECK(response.amplitude == doctest::Approx(4.68e-3).epsilon(0.04));
+  CHECK(std::abs(ledger_residual(start, run.sample())) < 0.01);
+  CHECK(run.sample().ledger.work_in == doctest::Approx(0.69).epsilon(0.05));
+}
