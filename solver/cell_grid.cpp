@@ -1,0 +1,86 @@
+#include "solver/cell_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grandamp {
+
+GridShape make_grid_shape(const Vector3& size, double cell_length, std::size_t granules) {
+  const double limit = 4.0 * static_cast<double>(granules) + 512.0;
+  std::array<double, 3> cells{};
+  for (double length = cell_length;; length *= 1.1) {
+    double total = 1.0;
+    for (std::size_t k = 0; k < 3; ++k) total *= cells[k] = std::max(1.0, std::floor(size[k] / length));
+    if (total <= limit) break;
+  }
+  GridShape shape;
+  std::sort(shape.axis.begin(), shape.axis.end(), [&](int a, int b) {
+    return cells[static_cast<std::size_t>(a)] != cells[static_cast<std::size_t>(b)]
+               ? cells[static_cast<std::size_t>(a)] < cells[static_cast<std::size_t>(b)]
+               : a < b;
+  });
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(shape.axis[k]);
+    shape.cells[k] = static_cast<int>(cells[axis]);
+    shape.inverse_length[k] = cells[axis] / size[axis];
+  }
+  return shape;
+}
+
+namespace {
+
+/// Granules are cut into this many pieces for the parallel count; a function of their number alone.
+std::size_t pieces_for(std::uint32_t count) {
+  return count < 20000 ? 1 : 8;
+}
+
+std::uint32_t piece_begin(std::uint32_t count, std::size_t pieces, std::size_t piece) {
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>(count) * piece / pieces);
+}
+
+} // namespace
+
+void CellGrid::sort(Granules& granules, const GridShape& shape, const Team& team) {
+  shape_ = shape;
+  const std::uint32_t count = granules.count();
+  if (cell_of_.size() < count) {
+    cell_of_.reset(count);
+    order_.reset(count);
+  }
+  const std::size_t cells = shape_.total();
+  const std::size_t pieces = pieces_for(count);
+  start_.assign(cells + 1, 0);
+  std::vector<std::vector<std::uint32_t>> counts(pieces); // of each piece and cell, then where its next granule goes
+
+  const auto cell_along = [&](const kernels::PositionRow& row, std::size_t k) {
+    const double x = (&row.x)[shape_.axis[k]] * shape_.inverse_length[k];
+    const int last = shape_.cells[k] - 1;
+    return x > 0.0 ? (x < last ? static_cast<int>(x) : last) : 0; // whatever x is, a cell: guards come later
+  };
+  team.each(pieces, [&](std::size_t piece) {
+    counts[piece].assign(cells, 0);
+    const std::uint32_t end = piece_begin(count, pieces, piece + 1);
+    for (std::uint32_t i = piece_begin(count, pieces, piece); i < end; ++i) {
+      const kernels::PositionRow& row = granules.position[i];
+      const std::size_t cell = index(cell_along(row, 0), cell_along(row, 1), cell_along(row, 2));
+      cell_of_[i] = static_cast<std::uint32_t>(cell);
+      ++counts[piece][cell];
+    }
+  });
+  std::uint32_t next = 0;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    start_[cell] = next;
+    for (auto& of_piece : counts) next += std::exchange(of_piece[cell], next);
+  }
+  start_[cells] = next;
+  team.each(pieces, [&](std::size_t piece) {
+    const std::uint32_t end = piece_begin(count, pieces, piece + 1);
+    for (std::uint32_t i = piece_begin(count, pieces, piece); i < end; ++i) order_[counts[piece][cell_of_[i]]++] = i;
+  });
+  team.each(pieces, [&](std::size_t piece) {
+    granules.permute(order_.data(), piece_begin(count, pieces, piece), piece_begin(count, pieces, piece + 1));
+  });
+  granules.swap_permuted();
+}
+
+} // namespace grandamp

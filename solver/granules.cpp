@@ -1,0 +1,81 @@
+#include "solver/granules.hpp"
+
+#include <cstring>
+
+namespace grandamp {
+
+namespace {
+constexpr std::size_t ghosts = 2;
+
+template <class T> void clear(RowArray<T>& rows, std::uint32_t first, std::uint32_t last) {
+  if (rows.size() > 0) std::memset(static_cast<void*>(rows.data() + first), 0, (last - first) * sizeof(T));
+}
+} // namespace
+
+Granules::Granules(std::size_t count, GranuleStorage storage)
+    : position(count + ghosts), motion(count + ghosts), predicted(storage.predicted ? count + ghosts : 0),
+      force(count + ghosts), id(count + ghosts), population(count + ghosts),
+      damping_granule(storage.ledger ? count + ghosts : 0), damping_wall(storage.ledger ? count + ghosts : 0),
+      friction_granule(storage.ledger ? count + ghosts : 0), friction_wall(storage.ledger ? count + ghosts : 0),
+      count_(static_cast<std::uint32_t>(count)), spare_position_(count + ghosts), spare_predicted_(predicted.size()),
+      spare_id_(count + ghosts), spare_population_(count + ghosts) {
+  clear_forces(0, count_ + ghosts);
+}
+
+kernels::GranuleArrays Granules::arrays() {
+  kernels::GranuleArrays a;
+  a.position = position.data();
+  a.motion = motion.data();
+  a.predicted = predicted.size() > 0 ? predicted.data() : motion.data();
+  a.force = force.data();
+  a.population = population.data();
+  a.damping_granule = damping_granule.data();
+  a.damping_wall = damping_wall.data();
+  a.friction_granule = friction_granule.data();
+  a.friction_wall = friction_wall.data();
+  a.ghost = count_;
+  return a;
+}
+
+void Granules::permute(const std::uint32_t* order, std::uint32_t first, std::uint32_t last) {
+  auto* spare_motion = reinterpret_cast<kernels::MotionRow*>(force.data());
+  for (std::uint32_t k = first; k < last; ++k) {
+    const std::uint32_t from = order[k];
+    spare_position_[k] = position[from];
+    spare_motion[k] = motion[from];
+    spare_id_[k] = id[from];
+    spare_population_[k] = population[from];
+  }
+  if (predicted.size() > 0)
+    for (std::uint32_t k = first; k < last; ++k) spare_predicted_[k] = predicted[order[k]];
+}
+
+void Granules::swap_permuted() {
+  position.swap(spare_position_);
+  id.swap(spare_id_);
+  population.swap(spare_population_);
+  predicted.swap(spare_predicted_);
+  motion.swap_memory(force); // where permute() put the rows
+  set_ghosts();
+}
+
+void Granules::clear_forces(std::uint32_t first, std::uint32_t last) {
+  clear(force, first, last);
+  clear(damping_granule, first, last);
+  clear(damping_wall, first, last);
+  clear(friction_granule, first, last);
+  clear(friction_wall, first, last);
+}
+
+void Granules::set_ghosts() {
+  for (std::uint32_t k = 0; k < ghosts; ++k) {
+    const double far = 1e30 * (k + 1);
+    position[count_ + k] = {far, far, far, 1e-3};
+    motion[count_ + k] = {{0.0, 0.0, 0.0}, 1.0, {0.0, 0.0, 0.0}, 1e3};
+    if (predicted.size() > 0) predicted[count_ + k] = motion[count_ + k];
+    id[count_ + k] = count_ + k;
+    population[count_ + k] = 0;
+  }
+}
+
+} // namespace grandamp

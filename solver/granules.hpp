@@ -1,0 +1,51 @@
+// The granules' rows, in cell-sorted order, and who is who in them.
+#pragma once
+
+#include "kernels/arguments.hpp"
+#include "solver/row_array.hpp"
+
+#include <cstdint>
+
+namespace grandamp {
+
+/// What the rows must hold besides position, motion and force.
+struct GranuleStorage {
+  bool predicted = false; ///< velocities predicted to the full step (verlet)
+  bool ledger = false;    ///< forces by mechanism
+};
+
+/// Structure of arrays. Each array has two ghost rows at its end (kernels::GranuleArrays).
+class Granules {
+public:
+  Granules() = default;
+  Granules(std::size_t count, GranuleStorage storage);
+
+  std::uint32_t count() const noexcept { return count_; }
+
+  RowArray<kernels::PositionRow> position;
+  RowArray<kernels::MotionRow> motion;
+  RowArray<kernels::MotionRow> predicted; ///< empty under leapfrog
+  RowArray<kernels::ForceRow> force;
+  RowArray<std::uint32_t> id; ///< scene order, by row
+  RowArray<std::uint8_t> population;
+  RowArray<kernels::DampingRow> damping_granule, damping_wall;
+  RowArray<kernels::ForceRow> friction_granule, friction_wall;
+
+  kernels::GranuleArrays arrays();
+
+  /// Row k becomes what row order[k] was. Force rows serve as scratch and hold nothing afterwards: clear_forces().
+  void permute(const std::uint32_t* order, std::uint32_t first, std::uint32_t last);
+  void swap_permuted();
+  void clear_forces(std::uint32_t first, std::uint32_t last);
+  /// Puts the two ghost rows in place.
+  void set_ghosts();
+
+private:
+  std::uint32_t count_ = 0;
+  RowArray<kernels::PositionRow> spare_position_;
+  RowArray<kernels::MotionRow> spare_predicted_;
+  RowArray<std::uint32_t> spare_id_;
+  RowArray<std::uint8_t> spare_population_;
+};
+
+} // namespace grandamp

@@ -1,0 +1,76 @@
+#include "solver/pouring.hpp"
+
+#include "solver/errors.hpp"
+#include "solver/measures.hpp"
+#include "solver/stepper.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace grandamp {
+
+namespace {
+
+constexpr double rest_share = 1e-6;         ///< of m g d, mean kinetic energy per granule
+constexpr double pouring_restitution = 0.3; ///< falls quickly to rest; what is at rest does not depend on it
+constexpr std::int64_t steps_between_looks = 250;
+constexpr double longest_pour = 30.0; ///< s
+
+/// The scene while granules fall: a still enclosure, lossy contacts, nothing recorded.
+Plan pouring_plan(const Plan& plan) {
+  Scene scene = plan.scene;
+  scene.structure.reset();
+  scene.excitation = {};
+  scene.output.energy = false;
+  scene.output.window.reset();
+  scene.time.step.reset();
+  scene.time.impact_speed.reset();
+  scene.time.steps_per_contact = 8.0;
+  scene.time.integrator = Integrator::leapfrog;
+  scene.time.duration = longest_pour;
+  scene.verlet = {};
+  for (Population& population : scene.populations) population.speed = 0.0;
+  if (scene.contact.damping != NormalDamping::tsuji) {
+    scene.contact.damping = NormalDamping::tsuji;
+    scene.contact.granule.normal_damping.reset();
+    if (scene.contact.wall) scene.contact.wall->normal_damping.reset();
+  }
+  const auto lossy = [](ContactConstants& constants) {
+    constants.alpha.reset();
+    constants.restitution = pouring_restitution;
+  };
+  lossy(scene.contact.granule);
+  if (scene.contact.wall) lossy(*scene.contact.wall);
+  return make_plan(scene);
+}
+
+} // namespace
+
+void pour(const Plan& plan, Placement& placement, kernels::InstructionSet isa, int threads,
+          const std::function<void(double, double)>& progress) {
+  const Plan pouring = pouring_plan(plan);
+  Stepper stepper(pouring, placement, isa, threads);
+  const double gravity = norm(plan.scene.gravity);
+  double weight_times_diameter = 0.0;
+  for (std::size_t i = 0; i < placement.position.size(); ++i)
+    weight_times_diameter += placement.mass[i] * gravity * 2.0 * placement.radius[i];
+
+  double share = 1.0;
+  while (share > rest_share) {
+    if (stepper.step_number() >= pouring.steps)
+      throw GuardError(fmt::format(
+          "packing: the granules came to no rest in {} s of pouring (mean kinetic energy {:.2g} m g d, wanted {:.0e}); "
+          "use packing.kind = \"random\", or give positions",
+          longest_pour, share, rest_share));
+    for (std::int64_t k = 1; k < steps_between_looks; ++k) stepper.step(false);
+    share = stepper.step(true).kinetic / weight_times_diameter;
+    if (progress) progress(stepper.time(), share);
+  }
+  const Granules& granules = stepper.granules();
+  for (std::uint32_t row = 0; row < granules.count(); ++row) {
+    const kernels::PositionRow& p = granules.position[row];
+    placement.position[granules.id[row]] = {p.x, p.y, p.z};
+  }
+}
+
+} // namespace grandamp

@@ -1,0 +1,71 @@
+// A plain array of rows: aligned to cache lines, not initialised, so that pages are first touched by whoever fills
+// them.
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace grandamp {
+
+template <class T> class RowArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+public:
+  RowArray() = default;
+  explicit RowArray(std::size_t size) { reset(size); }
+  RowArray(RowArray&& other) noexcept { swap(other); }
+  RowArray& operator=(RowArray&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  RowArray(const RowArray&) = delete;
+  RowArray& operator=(const RowArray&) = delete;
+  ~RowArray() { std::free(data_); }
+
+  /// Drops what is there; the new elements are not initialised.
+  void reset(std::size_t size) {
+    std::free(data_);
+    data_ = nullptr;
+    size_ = 0;
+    if (size == 0) return;
+    data_ = static_cast<T*>(std::aligned_alloc(64, (size * sizeof(T) + 63) / 64 * 64));
+    if (data_ == nullptr) throw std::bad_alloc();
+    size_ = size;
+  }
+
+  /// Keeps the first `keep` elements.
+  void grow(std::size_t size, std::size_t keep) {
+    RowArray larger(size);
+    for (std::size_t k = 0; k < keep; ++k) larger.data_[k] = data_[k];
+    swap(larger);
+  }
+
+  T* data() noexcept { return data_; }
+  const T* data() const noexcept { return data_; }
+  std::size_t size() const noexcept { return size_; }
+  T& operator[](std::size_t k) noexcept { return data_[k]; }
+  const T& operator[](std::size_t k) const noexcept { return data_[k]; }
+  void swap(RowArray& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+  }
+  /// Exchanges memory with an array of another type of row, of the same size: one buffer then serves the other's turn.
+  template <class Other> void swap_memory(RowArray<Other>& other) noexcept {
+    static_assert(sizeof(Other) == sizeof(T) && alignof(Other) == alignof(T));
+    T* const mine = data_;
+    data_ = reinterpret_cast<T*>(other.data_);
+    other.data_ = reinterpret_cast<Other*>(mine);
+    std::swap(size_, other.size_);
+  }
+
+private:
+  template <class Other> friend class RowArray;
+
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+} // namespace grandamp

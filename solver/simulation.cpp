@@ -1,0 +1,190 @@
+#include "solver/simulation.hpp"
+
+#include "solver/errors.hpp"
+#include "solver/packing.hpp"
+#include "solver/pouring.hpp"
+#include "solver/response.hpp"
+#include "solver/stepper.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace grandamp {
+
+namespace {
+
+kernels::InstructionSet chosen_isa(const std::string& name) {
+  if (name.empty()) return kernels::best_available();
+  std::string offered;
+  for (const auto set :
+       {kernels::InstructionSet::generic, kernels::InstructionSet::avx2, kernels::InstructionSet::avx512}) {
+    if (!kernels::available(set)) continue;
+    if (name == kernels::name(set)) return set;
+    offered += (offered.empty() ? "" : ", ") + std::string(kernels::name(set));
+  }
+  throw SceneError(Problem{
+      .key = "--isa", .value = name, .message = "this binary on this machine has no such kernels", .allowed = offered});
+}
+
+/// A step of fewer granules is too short to be worth sharing.
+constexpr std::size_t worth_sharing = 20000;
+
+int chosen_threads(int asked, std::size_t granules) {
+  if (asked < 0)
+    throw SceneError(Problem{.key = "--threads",
+                             .value = std::to_string(asked),
+                             .message = "not a number of threads",
+                             .allowed = "1 or more; 0: chosen"});
+  if (asked > 0) return asked;
+  return granules < worth_sharing ? 1 : usable_processors();
+}
+
+double forcing_period(const Excitation& excitation) {
+  const bool periodic = excitation.kind == ExcitationKind::harmonic ||
+                        (excitation.kind == ExcitationKind::prescribed && !excitation.velocity);
+  return periodic && excitation.frequency > 0.0 ? 1.0 / excitation.frequency : 0.0;
+}
+
+Placement placed(const Plan& plan, kernels::InstructionSet isa, int threads, const RunOptions& options) {
+  Placement placement = place_granules(plan);
+  if (placement.to_be_poured) pour(plan, placement, isa, threads, options.pouring_progress);
+  return placement;
+}
+
+} // namespace
+
+struct Simulation::State {
+  State(const Scene& scene, const RunOptions& options)
+      : plan(make_plan(scene)), isa(chosen_isa(options.isa)), isa_name(kernels::name(isa)),
+        stepper(plan, placed(plan, isa, chosen_threads(options.threads, plan.granules), options), isa,
+                chosen_threads(options.threads, plan.granules)),
+        response(plan.window, forcing_period(plan.scene.excitation), plan.time_step) {}
+
+  Sample sample_of(const StepRecord& record, std::int64_t step_number) const {
+    Sample sample;
+    sample.time = static_cast<double>(step_number) * plan.time_step;
+    sample.displacement = record.enclosure.displacement;
+    sample.velocity = record.enclosure.velocity;
+    sample.excitation = record.enclosure.excitation;
+    sample.reaction = record.reaction;
+    sample.stored.kinetic = record.kinetic;
+    sample.stored.elastic = record.elastic;
+    sample.stored.structure = record.enclosure.stored;
+    for (std::size_t k = 0; k < 3; ++k)
+      sample.stored.gravitational -=
+          plan.scene.gravity[k] * (record.mass_moment[k] + plan.damper.granule_mass * record.enclosure.displacement *
+                                                               stepper.motion().direction()[k]);
+    sample.contacts = record.contacts;
+    if (plan.scene.output.energy) sample.ledger = record.until;
+    return sample;
+  }
+
+  void note(std::int64_t step_number, const StepRecord& record) {
+    if (plan.scene.structure) response.add(step_number, record.enclosure.displacement, record.enclosure.velocity);
+  }
+
+  Plan plan;
+  kernels::InstructionSet isa;
+  std::string isa_name;
+  Stepper stepper;
+  ResponseAccumulator response;
+  bool end_noted = false;
+  std::int64_t contact_samples = 0;
+  double contacts_sum = 0.0;
+};
+
+Simulation::Simulation(const Scene& scene, const RunOptions& options)
+    : state_(std::make_unique<State>(scene, options)) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+const Plan& Simulation::plan() const {
+  return state_->plan;
+}
+const std::string& Simulation::isa() const {
+  return state_->isa_name;
+}
+int Simulation::threads() const {
+  return state_->stepper.threads();
+}
+std::int64_t Simulation::step_number() const {
+  return state_->stepper.step_number();
+}
+double Simulation::time() const {
+  return state_->stepper.time();
+}
+bool Simulation::finished() const {
+  return step_number() >= state_->plan.steps;
+}
+
+void Simulation::step() {
+  const std::int64_t at = step_number();
+  state_->note(at, state_->stepper.step(false));
+}
+
+Sample Simulation::step_and_sample() {
+  State& s = *state_;
+  const std::int64_t at = step_number();
+  const StepRecord& record = s.stepper.step(true);
+  s.note(at, record);
+  Sample sample = s.sample_of(record, at);
+  if (s.plan.granules > 0) {
+    ++s.contact_samples;
+    s.contacts_sum += static_cast<double>(sample.contacts) / static_cast<double>(s.plan.granules);
+  }
+  return sample;
+}
+
+Sample Simulation::sample() {
+  const StepRecord record = state_->stepper.trial(true);
+  if (finished() && !std::exchange(state_->end_noted, true)) state_->note(step_number(), record);
+  return state_->sample_of(record, step_number());
+}
+
+GranuleTable Simulation::granules() {
+  RowArray<kernels::MotionRow> mean;
+  const StepRecord record = state_->stepper.trial(false, &mean);
+  const Granules& rows = state_->stepper.granules();
+  const Vector3& direction = state_->stepper.motion().direction();
+  const double frame = 0.5 * (record.enclosure.velocity_before + record.enclosure.velocity_after);
+  GranuleTable table;
+  const std::uint32_t count = rows.count();
+  table.position.resize(count);
+  table.velocity.resize(count);
+  table.spin.resize(count);
+  table.radius.resize(count);
+  table.population.resize(count);
+  for (std::uint32_t row = 0; row < count; ++row) {
+    const std::uint32_t id = rows.id[row];
+    const kernels::PositionRow& p = rows.position[row];
+    table.position[id] = {p.x, p.y, p.z};
+    for (std::size_t k = 0; k < 3; ++k) {
+      table.velocity[id][k] = mean[row].velocity[k] + frame * direction[k];
+      table.spin[id][k] = mean[row].surface_spin[k] / p.radius;
+    }
+    table.radius[id] = p.radius;
+    table.population[id] = rows.population[row];
+  }
+  return table;
+}
+
+VerletStatistics Simulation::verlet() const {
+  VerletStatistics v = state_->stepper.verlet();
+  if (state_->contact_samples > 0)
+    v.contacts_per_granule = state_->contacts_sum / static_cast<double>(state_->contact_samples);
+  return v;
+}
+
+GuardStatistics Simulation::guards() const {
+  return state_->stepper.guards();
+}
+ResponseStatistics Simulation::response() const {
+  return state_->response.result();
+}
+std::vector<std::string> Simulation::take_warnings() {
+  return state_->stepper.take_warnings();
+}
+
+} // namespace grandamp

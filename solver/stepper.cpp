@@ -1,0 +1,311 @@
+#include "solver/stepper.hpp"
+
+#include "solver/guards.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace grandamp {
+
+using kernels::ContactResult;
+using kernels::MotionRow;
+using kernels::Observation;
+using kernels::PositionRow;
+
+const Stepper::Kernels& Stepper::kernels_for(bool energies) const {
+  return energies ? with_energies_ : plain_;
+}
+
+namespace {
+
+constexpr std::array ledger_terms{&Ledger::work_in,     &Ledger::structural_damping, &Ledger::normal_granule,
+                                  &Ledger::normal_wall, &Ledger::friction_granule,   &Ledger::friction_wall};
+
+/// The share of a step's dissipation that falls before t_n.
+Ledger first_half(const StepRecord& record) {
+  Ledger half;
+  for (const auto term : ledger_terms) half.*term = 0.5 * (record.dissipated.*term);
+  half.work_in = record.enclosure.work_in_first_half;
+  half.structural_damping = record.enclosure.damping_loss_first_half;
+  return half;
+}
+
+} // namespace
+
+Ledger Stepper::ledger_at(const StepRecord& record) const {
+  Ledger sum = ledger_;
+  const Ledger half = first_half(record);
+  if (step_number_ > 0)
+    for (const auto term : ledger_terms) sum.*term += half.*term;
+  return sum;
+}
+
+const StepRecord& Stepper::step(bool energies) {
+  rebuild_if_due();
+  audit_if_due();
+  record_ = advance(energies);
+  // The first half of step 0 lies before t = 0.
+  const Ledger before = first_half(record_);
+  for (const auto term : ledger_terms)
+    ledger_.*term += record_.dissipated.*term - (step_number_ == 0 ? before.*term : 0.0);
+  ++step_number_;
+  return record_;
+}
+
+StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean) {
+  rebuild_if_due();
+  const auto copied = [&](const auto& rows) {
+    std::remove_cvref_t<decltype(rows)> copy(rows.size());
+    std::copy_n(rows.data(), rows.size(), copy.data());
+    return copy;
+  };
+  auto position = copied(granules_.position);
+  auto motion = copied(granules_.motion);
+  auto predicted = copied(granules_.predicted);
+  const EnclosureState enclosure = enclosure_;
+  const ListAge age = age_;
+  const GuardStatistics guards = guards_;
+
+  const StepRecord record = advance(energies);
+
+  if (mean != nullptr) {
+    mean->reset(granules_.motion.size());
+    for (std::uint32_t i = 0; i < granules_.count(); ++i) {
+      MotionRow& row = (*mean)[i];
+      row = motion[i];
+      for (int k = 0; k < 3; ++k) {
+        row.velocity[k] = 0.5 * (motion[i].velocity[k] + granules_.motion[i].velocity[k]);
+        row.surface_spin[k] = 0.5 * (motion[i].surface_spin[k] + granules_.motion[i].surface_spin[k]);
+      }
+    }
+  }
+  granules_.position = std::move(position);
+  granules_.motion = std::move(motion);
+  granules_.predicted = std::move(predicted);
+  enclosure_ = enclosure;
+  age_ = age;
+  guards_ = guards;
+  return record;
+}
+
+StepRecord Stepper::advance(bool energies) {
+  const Kernels& kernels = kernels_for(energies);
+  results_.assign(list_.segments().size(), {});
+  for (SegmentResult& result : results_) {
+    result.pairs.max_overlap = result.walls.max_overlap = guards_.max_overlap;
+    result.pairs.max_closing = result.walls.max_closing = guards_.max_closing;
+  }
+  const double reaction = wall_forces(kernels);
+  const EnclosureStep enclosure = motion_.advance(enclosure_, step_number_, reaction);
+  const Vector3& direction = motion_.direction();
+  Vector3 kick = plan_.scene.gravity, frame_velocity{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    kick[k] = kick[k] * time_step_ - (enclosure.velocity_after - enclosure.velocity_before) * direction[k];
+    frame_velocity[k] = 0.5 * (enclosure.velocity_after + enclosure.velocity_before) * direction[k];
+  }
+  boundary_forces(kernels);
+  sweep(kernels, kick, frame_velocity);
+  StepRecord record = collect(reaction, enclosure);
+  record.until = ledger_at(record);
+  return record;
+}
+
+double Stepper::wall_forces(const Kernels& kernels) {
+  kernels::WallArguments shared;
+  shared.granules = granules_.arrays();
+  shared.law = wall_laws_.front();
+  shared.laws = wall_laws_.data();
+  shared.enclosure_inverse_mass = enclosure_inverse_mass_;
+  shared.friction_inverse_mass = friction_inverse_mass_;
+  shared.friction_cap = friction_cap_;
+  std::copy_n(motion_.direction().begin(), 3, shared.direction);
+  team_.each(list_.segments().size(), [&](std::size_t s) {
+    Segment& segment = list_.segments()[s];
+    kernels::WallArguments a = shared;
+    a.touching = segment.touching_wall.data();
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+      if (segment.walls[w].count == 0) continue;
+      a.surface = walls_[w].surface;
+      a.list = segment.walls[w].granules.data();
+      a.count = segment.walls[w].count;
+      (walls_[w].side ? kernels.side : kernels.plane)(a, results_[s].walls);
+    }
+  });
+  double reaction = 0.0;
+  for (const SegmentResult& result : results_)
+    for (std::size_t k = 0; k < 3; ++k) reaction -= result.walls.force[k] * motion_.direction()[k];
+  return reaction;
+}
+
+kernels::PairArguments Stepper::pair_arguments(Segment& segment) {
+  kernels::PairArguments a;
+  a.granules = granules_.arrays();
+  a.touching = segment.touching.data();
+  a.law = pair_laws_.front();
+  a.laws = pair_laws_.data();
+  a.populations = contacts_.populations;
+  a.radius = plan_.largest_radius;
+  a.mass = plan_.scene.populations.empty() ? 0.0 : 1.0 / granules_.motion[0].inverse_mass;
+  a.friction_cap = friction_cap_;
+  return a;
+}
+
+void Stepper::boundary_forces(const Kernels& kernels) {
+  team_.each(list_.segments().size(), [&](std::size_t s) {
+    Segment& segment = list_.segments()[s];
+    if (segment.boundary.count() == 0) return;
+    kernels::PairArguments a = pair_arguments(segment);
+    a.pairs = segment.boundary.data();
+    a.count = segment.boundary.count();
+    kernels.pair(a, results_[s].pairs);
+  });
+}
+
+void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity) {
+  team_.each(list_.segments().size(), [&](std::size_t s) {
+    Segment& segment = list_.segments()[s];
+    kernels::PairArguments pairs = pair_arguments(segment);
+    kernels::MotionArguments motion;
+    motion.granules = pairs.granules;
+    motion.time_step = time_step_;
+    std::copy_n(kick.begin(), 3, motion.kick);
+    std::copy_n(frame_velocity.begin(), 3, motion.frame_velocity);
+    for (const Block& block : segment.blocks) {
+      pairs.pairs = segment.inner.data() + block.first_pair;
+      pairs.count = block.last_pair - block.first_pair;
+      kernels.pair(pairs, results_[s].pairs);
+      motion.first = block.first;
+      motion.last = block.last;
+      kernels.motion(motion, results_[s].motion);
+    }
+  });
+}
+
+StepRecord Stepper::collect(double reaction, const EnclosureStep& enclosure) {
+  StepRecord record;
+  record.enclosure = enclosure;
+  record.reaction = reaction;
+  record.dissipated.work_in = enclosure.work_in;
+  record.dissipated.structural_damping = enclosure.damping_loss;
+  double max_speed_squared = 0.0, sum_speed_squared = 0.0;
+  for (const SegmentResult& result : results_) {
+    record.elastic += result.walls.elastic + result.pairs.elastic;
+    record.contacts += result.walls.contacts + result.pairs.contacts;
+    record.kinetic += result.motion.kinetic;
+    for (std::size_t k = 0; k < 3; ++k) record.mass_moment[k] += result.motion.mass_moment[k];
+    record.dissipated.normal_granule += result.motion.normal_granule;
+    record.dissipated.normal_wall += result.motion.normal_wall;
+    record.dissipated.friction_granule += result.motion.friction_granule;
+    record.dissipated.friction_wall += result.motion.friction_wall;
+    for (const ContactResult* contact : {&result.pairs, static_cast<const ContactResult*>(&result.walls)}) {
+      guards_.max_overlap = std::max(guards_.max_overlap, contact->max_overlap);
+      guards_.max_closing = std::max(guards_.max_closing, contact->max_closing);
+    }
+    max_speed_squared = std::max(max_speed_squared, result.motion.max_speed_squared);
+    sum_speed_squared += result.motion.sum_speed_squared;
+  }
+  const double max_speed = std::sqrt(max_speed_squared);
+  guards_.max_speed = std::max(guards_.max_speed, max_speed);
+  age_list(max_speed);
+  watch(sum_speed_squared);
+  return record;
+}
+
+void Stepper::watch(double sum_speed_squared) {
+  const GuardView view{plan_, granules_, list_, walls_, step_number_, time_step_};
+  if (!std::isfinite(sum_speed_squared)) throw not_finite(view);
+  if (guards_.max_overlap > overlap_stop) throw too_deep(view, guards_.max_overlap);
+  if (guards_.max_closing > closing_limit_) throw too_fast(view, guards_.max_closing);
+  if (guards_.max_overlap > overlap_warning && !warned_overlap_) {
+    warned_overlap_ = true;
+    warnings_.push_back(deep_overlap_warning(view, guards_.max_overlap));
+  }
+  if (guards_.max_closing > plan_.impact_speed && !warned_closing_) {
+    warned_closing_ = true;
+    warnings_.push_back(closing_speed_warning(view, guards_.max_closing));
+  }
+}
+
+// ---- the list ------------------------------------------------------------------------------------------------------
+
+void Stepper::age_list(double max_speed) {
+  ++age_.steps;
+  age_.travelled += max_speed * time_step_;
+  if (plan_.scene.verlet.policy != ListPolicy::displacement) return;
+  double farthest = 0.0;
+  for (std::uint32_t i = 0; i < granules_.count(); ++i) {
+    const PositionRow &now = granules_.position[i], &then = built_at_[i];
+    const double x = now.x - then.x, y = now.y - then.y, z = now.z - then.z;
+    farthest = std::max(farthest, x * x + y * y + z * z);
+  }
+  age_.farthest = std::sqrt(farthest);
+}
+
+void Stepper::rebuild_if_due() {
+  if (rebuild_due(plan_.scene.verlet, age_, skin_)) rebuild();
+}
+
+void Stepper::rebuild() {
+  if (age_.built && granules_.count() > 0) {
+    tuner_.note(static_cast<double>(list_.candidates()) / granules_.count(), age_.steps);
+    if (tuner_.active) skin_ = tuner_.skin;
+    build_steps_ += age_.steps;
+  }
+  search_.skin = skin_;
+  search_.cell_length = std::max(plan_.cell, 2.0 * search_.largest_radius + skin_);
+  if (plan_.scene.verlet.policy == ListPolicy::all_pairs)
+    list_.build_from_all_pairs(granules_, walls_, search_);
+  else
+    list_.build(granules_, size_, walls_, search_, team_);
+  for (const Segment& segment : list_.segments()) guards_.escaped += static_cast<std::int64_t>(segment.outside.size());
+  if (guards_.escaped > 0) throw escaped({plan_, granules_, list_, walls_, step_number_, time_step_}, guards_.escaped);
+
+  ++builds_;
+  if (granules_.count() > 0) candidates_sum_ += static_cast<double>(list_.candidates()) / granules_.count();
+  age_ = {};
+  age_.built = true;
+  if (plan_.scene.verlet.policy == ListPolicy::predicted)
+    age_.allowed = predicted_interval(plan_.scene.verlet, skin_, largest_laboratory_speed(), time_step_);
+  if (plan_.scene.verlet.policy == ListPolicy::displacement) {
+    built_at_.reset(granules_.position.size());
+    std::copy_n(granules_.position.data(), granules_.position.size(), built_at_.data());
+  }
+}
+
+double Stepper::largest_laboratory_speed() const {
+  double largest = 0.0;
+  for (std::uint32_t i = 0; i < granules_.count(); ++i) {
+    double square = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double v = granules_.motion[i].velocity[k] + enclosure_.velocity * motion_.direction()[k];
+      square += v * v;
+    }
+    largest = std::max(largest, square);
+  }
+  return std::sqrt(largest);
+}
+
+void Stepper::audit_if_due() {
+  const std::int64_t every = plan_.scene.verlet.audit;
+  if (every > 0 && step_number_ % every == 0) audit_.compare(granules_, list_, walls_, every);
+}
+
+VerletStatistics Stepper::verlet() const {
+  VerletStatistics v;
+  v.builds = builds_;
+  v.mean_interval = builds_ > 1 ? static_cast<double>(build_steps_) / static_cast<double>(builds_ - 1)
+                                : static_cast<double>(age_.steps);
+  v.candidates_per_granule = builds_ > 0 ? candidates_sum_ / static_cast<double>(builds_) : 0.0;
+  v.skin = skin_;
+  v.audited = audit_.audited;
+  v.missed = audit_.missed;
+  v.missed_pair_steps = audit_.missed_pair_steps;
+  return v;
+}
+
+std::vector<std::string> Stepper::take_warnings() {
+  return std::exchange(warnings_, {});
+}
+
+} // namespace grandamp

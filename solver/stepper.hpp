@@ -1,0 +1,128 @@
+// The step itself, phase by phase: list, walls, structure, then one sweep over the rows. Knows nothing of packings,
+// statistics over time or files.
+#pragma once
+
+#include "kernels/dispatch.hpp"
+#include "solver/audit.hpp"
+#include "solver/enclosure_motion.hpp"
+#include "solver/granules.hpp"
+#include "solver/material.hpp"
+#include "solver/packing.hpp"
+#include "solver/plan.hpp"
+#include "solver/rebuild_policy.hpp"
+#include "solver/simulation.hpp"
+#include "solver/team.hpp"
+#include "solver/verlet_list.hpp"
+#include "solver/walls.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace grandamp {
+
+/// What one step told, about t_n, the instant that it started from.
+struct StepRecord {
+  EnclosureStep enclosure;
+  double reaction = 0.0;               ///< N
+  double elastic = 0.0, kinetic = 0.0; ///< J; with energies
+  Vector3 mass_moment{0.0, 0.0, 0.0};  ///< with energies
+  std::int64_t contacts = 0;           ///< with energies
+  Ledger dissipated;                   ///< in this step alone; granules' share with the ledger
+  Ledger until;                        ///< from t = 0 to t_n
+};
+
+class Stepper {
+public:
+  Stepper(const Plan& plan, const Placement& start, kernels::InstructionSet isa, int threads);
+
+  /// One step from t_n to t_(n+1). Throws GuardError.
+  const StepRecord& step(bool energies);
+  /// What a step would tell now; afterwards everything is as before, but for a list that was due being rebuilt.
+  /// `mean`, if given, receives the velocities at t_n in the enclosure's frame, by row.
+  StepRecord trial(bool energies, RowArray<kernels::MotionRow>* mean = nullptr);
+
+  std::int64_t step_number() const noexcept { return step_number_; }
+  double time() const noexcept { return static_cast<double>(step_number_) * time_step_; }
+  const Granules& granules() const noexcept { return granules_; }
+  const EnclosureMotion& motion() const noexcept { return motion_; }
+
+  VerletStatistics verlet() const;
+  const GuardStatistics& guards() const noexcept { return guards_; }
+  std::vector<std::string> take_warnings();
+  kernels::InstructionSet isa() const noexcept { return isa_; }
+  int threads() const noexcept { return team_.threads(); }
+
+private:
+  /// Sums of one segment, kept apart so that they are added in order.
+  struct SegmentResult {
+    kernels::ContactResult pairs;
+    kernels::WallResult walls;
+    kernels::MotionResult motion;
+  };
+  struct Kernels {
+    kernels::PairKernel* pair = nullptr;
+    kernels::WallKernel* plane = nullptr;
+    kernels::WallKernel* side = nullptr;
+    kernels::MotionKernel* motion = nullptr;
+  };
+
+  void place(const Placement& start);
+  void choose_kernels();
+  void take_half_step_back();
+  const Kernels& kernels_for(bool energies) const;
+
+  void rebuild_if_due();
+  void rebuild();
+  double largest_laboratory_speed() const;
+  void audit_if_due();
+  double wall_forces(const Kernels& kernels); ///< the reaction along the enclosure's direction, N
+  void boundary_forces(const Kernels& kernels);
+  void sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity);
+  StepRecord collect(double reaction, const EnclosureStep& enclosure);
+  void age_list(double max_speed);
+  void watch(double sum_speed_squared);
+  StepRecord advance(bool energies);
+  Ledger ledger_at(const StepRecord& record) const;
+  kernels::PairArguments pair_arguments(Segment& segment);
+
+  const Plan plan_;
+  double time_step_;
+  kernels::InstructionSet isa_;
+  Team team_;
+  std::vector<Wall> walls_;
+  Vector3 size_;
+  ContactTable contacts_;
+  kernels::ContactEffects contact_effects_;
+  kernels::MotionEffects motion_effects_;
+  Kernels plain_, with_energies_;
+  VerletList::Search search_;
+  std::vector<kernels::LawRow> pair_laws_, wall_laws_;
+  double friction_cap_ = 0.0;
+  double enclosure_inverse_mass_ = 0.0;
+  double friction_inverse_mass_ = 0.0;
+  double closing_limit_ = 0.0;
+
+  // The state of the run.
+  std::int64_t step_number_ = 0;
+  Granules granules_;
+  VerletList list_;
+  ListAge age_;
+  SkinTuner tuner_;
+  double skin_ = 0.0;
+  EnclosureMotion motion_;
+  EnclosureState enclosure_;
+  Ledger ledger_; ///< from t = 0 to t_(n-1/2)
+  Audit audit_;
+  GuardStatistics guards_;
+  std::int64_t builds_ = 0, build_steps_ = 0;
+  double candidates_sum_ = 0.0;
+  RowArray<kernels::PositionRow> built_at_; ///< displacement policy
+
+  StepRecord record_;
+  std::vector<SegmentResult> results_;
+  std::vector<std::string> warnings_;
+  bool warned_overlap_ = false, warned_closing_ = false;
+};
+
+} // namespace grandamp

@@ -1,0 +1,180 @@
+// How a Stepper comes to its first step.
+#include "solver/guards.hpp"
+#include "solver/measures.hpp"
+#include "solver/stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace grandamp {
+
+using kernels::MotionRow;
+using kernels::Observation;
+using kernels::PositionRow;
+using kernels::Variety;
+
+namespace {
+
+kernels::Damping damping_of(const Contact& contact) {
+  switch (contact.damping) {
+  case NormalDamping::tsuji:
+    return kernels::Damping::tsuji;
+  case NormalDamping::linear:
+    return kernels::Damping::linear;
+  case NormalDamping::none:
+    break;
+  }
+  return kernels::Damping::none;
+}
+
+kernels::Friction friction_of(const Contact& contact) {
+  if (contact.friction == FrictionLaw::none) return kernels::Friction::none;
+  return contact.rotation ? kernels::Friction::coulomb : kernels::Friction::coulomb_without_rotation;
+}
+
+bool all_equal(const std::vector<double>& values) {
+  return std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
+}
+
+bool all_equal(const std::vector<ContactLaw>& laws) {
+  return std::adjacent_find(laws.begin(), laws.end(), [](const auto& a, const auto& b) { return !(a == b); }) ==
+         laws.end();
+}
+
+std::vector<kernels::LawRow> law_rows(const std::vector<ContactLaw>& laws, NormalDamping damping) {
+  std::vector<kernels::LawRow> rows;
+  for (const ContactLaw& law : laws)
+    rows.push_back({law.stiffness_coefficient, damping == NormalDamping::linear ? law.normal_damping : law.alpha,
+                    law.friction, 0.0});
+  if (rows.empty()) rows.push_back({});
+  return rows;
+}
+
+/// Share of the slip's momentum that friction may take in a step. With 1 a granule held by three others makes energy;
+/// 0.2 is passive up to 14 contacts.
+constexpr double friction_cap_share = 0.2;
+/// What the slip of a solid sphere feels of its mass, when it can spin.
+constexpr double rolling_mass_share = 2.0 / 7.0;
+
+/// Granules that can lean on the enclosure's walls at once: what fits side by side, hexagons of 2 sqrt(3) r^2 each.
+double most_wall_contacts(const Plan& plan) {
+  const Enclosure& enclosure = plan.scene.enclosure;
+  const Vector3 l = bounding_box(enclosure);
+  const double area = 2.0 * (l[0] * l[1] + l[1] * l[2] + l[2] * l[0]);
+  const double fit = area / (2.0 * std::numbers::sqrt3 * plan.smallest_radius * plan.smallest_radius);
+  return std::max(1.0, std::min(fit, static_cast<double>(plan.granules)));
+}
+
+} // namespace
+
+Stepper::Stepper(const Plan& plan, const Placement& start, kernels::InstructionSet isa, int threads)
+    : plan_(plan), time_step_(plan.time_step), isa_(isa), team_(threads), walls_(make_walls(plan.scene.enclosure)),
+      size_(bounding_box(plan.scene.enclosure)), contacts_(make_contact_table(plan.scene)),
+      closing_limit_(closing_speed_limit(plan)), motion_(plan.scene, plan.time_step) {
+  const Contact& contact = plan_.scene.contact;
+  contact_effects_.damping = damping_of(contact);
+  contact_effects_.friction = friction_of(contact);
+  contact_effects_.variety = !all_equal(contacts_.granule) || !all_equal(contacts_.wall) ? Variety::materials
+                             : !all_equal(start.radius) || !all_equal(start.mass)        ? Variety::sizes
+                                                                                         : Variety::alike;
+  pair_laws_ = law_rows(contacts_.granule, contact.damping);
+  wall_laws_ = law_rows(contacts_.wall, contact.damping);
+  friction_cap_ = friction_cap_share * (contact_effects_.rotates() ? rolling_mass_share : 1.0) / time_step_;
+  if (plan_.scene.structure && plan_.granules > 0) {
+    enclosure_inverse_mass_ = 1.0 / plan_.scene.structure->mass;
+    // Many walls' contacts brake the same structure at once: each is allowed its share of that mass.
+    friction_inverse_mass_ = enclosure_inverse_mass_ * most_wall_contacts(plan_);
+  }
+  motion_effects_.integration =
+      plan_.scene.time.integrator == Integrator::verlet ? kernels::Integration::verlet : kernels::Integration::leapfrog;
+  motion_effects_.rotates = contact_effects_.rotates();
+  motion_effects_.accelerated = motion_.moves() || plan_.scene.gravity != Vector3{0.0, 0.0, 0.0};
+  choose_kernels();
+
+  const ListPolicy policy = plan_.scene.verlet.policy;
+  skin_ = policy == ListPolicy::none || policy == ListPolicy::all_pairs ? 0.0 : plan_.skin;
+  tuner_.active = plan_.skin_tuned && skin_ > 0.0 && policy != ListPolicy::fixed;
+  tuner_.skin = skin_;
+  tuner_.least = 0.04 * 2.0 * plan_.largest_radius;
+  tuner_.largest = 0.8 * 2.0 * plan_.largest_radius;
+  if (plan_.scene.verlet.cell) tuner_.largest = std::min(tuner_.largest, plan_.cell - 2.0 * plan_.largest_radius);
+  search_.alike = contact_effects_.variety == Variety::alike;
+  search_.kernel = kernels::candidate_kernel_for(isa_, search_.alike);
+  search_.largest_radius = plan_.largest_radius;
+
+  place(start);
+  take_half_step_back();
+}
+
+void Stepper::choose_kernels() {
+  const bool ledger = plan_.scene.output.energy;
+  const auto chosen = [&](Observation observation) {
+    kernels::ContactEffects contact = contact_effects_;
+    kernels::MotionEffects motion = motion_effects_;
+    contact.observation = motion.observation = observation;
+    return Kernels{kernels::pair_kernel_for(isa_, contact), kernels::plane_kernel_for(isa_, contact),
+                   kernels::side_kernel_for(isa_, contact), kernels::motion_kernel_for(isa_, motion)};
+  };
+  plain_ = chosen(ledger ? Observation::ledger : Observation::none);
+  with_energies_ = chosen(ledger ? Observation::ledger_and_energies : Observation::energies);
+}
+
+void Stepper::place(const Placement& start) {
+  const std::size_t count = start.position.size();
+  granules_ = Granules(count, {.predicted = motion_effects_.integration == kernels::Integration::verlet,
+                               .ledger = plan_.scene.output.energy});
+  const double frame = motion_.initial_velocity();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector3 &p = start.position[i], &v = start.velocity[i], &w = start.spin[i];
+    const double r = start.radius[i];
+    granules_.position[i] = {p[0], p[1], p[2], r};
+    MotionRow& motion = granules_.motion[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      motion.velocity[k] = v[k] - frame * motion_.direction()[k];
+      motion.surface_spin[k] = r * w[k];
+    }
+    motion.inverse_mass = 1.0 / start.mass[i];
+    motion.inverse_radius = 1.0 / r;
+    if (granules_.predicted.size() > 0) granules_.predicted[i] = motion;
+    granules_.id[i] = static_cast<std::uint32_t>(i);
+    granules_.population[i] = static_cast<std::uint8_t>(start.population[i]);
+  }
+  granules_.set_ghosts();
+}
+
+void Stepper::take_half_step_back() {
+  // Forces at t = 0, with the velocities of t = 0, through one kick that is then halved and turned round.
+  rebuild_if_due();
+  results_.assign(list_.segments().size(), {});
+  const Kernels& kernels = kernels_for(false);
+  const double reaction = wall_forces(kernels);
+  enclosure_ = motion_.start(reaction);
+  const double frame_change = enclosure_.velocity - motion_.initial_velocity();
+  const std::uint32_t count = granules_.count();
+  RowArray<PositionRow> position(granules_.position.size());
+  RowArray<MotionRow> motion(granules_.motion.size()), predicted(granules_.predicted.size());
+  std::copy_n(granules_.position.data(), position.size(), position.data());
+  std::copy_n(granules_.motion.data(), motion.size(), motion.data());
+  std::copy_n(granules_.predicted.data(), predicted.size(), predicted.data());
+  Vector3 kick = plan_.scene.gravity;
+  for (double& component : kick) component *= time_step_;
+  boundary_forces(kernels);
+  sweep(kernels, kick, {});
+  granules_.position = std::move(position);
+  for (std::uint32_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      MotionRow &before = motion[i], &after = granules_.motion[i];
+      before.velocity[k] -= 0.5 * (after.velocity[k] - before.velocity[k]) + frame_change * motion_.direction()[k];
+      before.surface_spin[k] -= 0.5 * (after.surface_spin[k] - before.surface_spin[k]);
+    }
+  granules_.motion = std::move(motion);
+  granules_.predicted = std::move(predicted);
+  for (const auto& result : results_) {
+    guards_.max_overlap = std::max({guards_.max_overlap, result.pairs.max_overlap, result.walls.max_overlap});
+    guards_.max_closing = std::max({guards_.max_closing, result.pairs.max_closing, result.walls.max_closing});
+  }
+}
+
+} // namespace grandamp

@@ -1,0 +1,40 @@
+// Who does the work: the calling thread alone, or a TBB arena. Work is always cut into the same pieces, whatever the
+// number of threads, and each piece has its own results, so that the bits do not depend on it.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace grandamp {
+
+class Team {
+public:
+  /// threads >= 1; 1 never enters TBB.
+  explicit Team(int threads);
+  ~Team();
+  Team(Team&&) noexcept;
+  Team& operator=(Team&&) noexcept;
+
+  int threads() const noexcept { return threads_; }
+
+  /// Calls work(0) ... work(pieces - 1), each once, in any order and at the same time.
+  template <class Work> void each(std::size_t pieces, const Work& work) const {
+    if (threads_ == 1 || pieces < 2)
+      for (std::size_t piece = 0; piece < pieces; ++piece) work(piece);
+    else
+      in_parallel(pieces, [&work](std::size_t piece) { work(piece); });
+  }
+
+private:
+  void in_parallel(std::size_t pieces, const std::function<void(std::size_t)>& work) const;
+
+  struct Arena;
+  int threads_;
+  std::unique_ptr<Arena> arena_;
+};
+
+/// Processors that this process may use.
+int usable_processors();
+
+} // namespace grandamp

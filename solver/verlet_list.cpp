@@ -1,0 +1,219 @@
+#include "solver/verlet_list.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace grandamp {
+
+namespace {
+
+using kernels::CandidatePair;
+using kernels::IndexRange;
+
+/// Below this many granules one segment is faster than any division of the work.
+constexpr std::uint32_t single_segment = 20000;
+constexpr std::uint32_t most_segments = 16;
+
+/// Positions as four arrays, laid over the force rows (64 bytes a granule, of which 32 are needed).
+struct Coordinates {
+  double *x, *y, *z, *radius;
+
+  explicit Coordinates(Granules& granules) {
+    const std::size_t rows = granules.force.size();
+    x = granules.force.data()->force;
+    y = x + rows;
+    z = y + rows;
+    radius = z + rows; // vectors may read past it: the upper half of the buffer is free
+  }
+
+  void fill(const Granules& granules, std::uint32_t first, std::uint32_t last) const {
+    for (std::uint32_t i = first; i < last; ++i) {
+      const kernels::PositionRow& row = granules.position[i];
+      x[i] = row.x;
+      y[i] = row.y;
+      z[i] = row.z;
+      radius[i] = row.radius;
+    }
+  }
+};
+
+void list_walls(Segment& segment, const Granules& granules, const std::vector<Wall>& walls, double skin) {
+  segment.walls.resize(walls.size());
+  segment.outside.clear();
+  std::size_t longest = 0;
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    WallList& list = segment.walls[w];
+    list.granules.clear();
+    // Half the skin: the wall itself does not move in the enclosure's frame.
+    for (std::uint32_t i = segment.first; i < segment.last; ++i) {
+      const double inside = distance_inside(walls[w], granules.position[i]);
+      if (!(inside >= 0.0)) segment.outside.push_back(i);
+      if (inside < granules.position[i].radius + 0.5 * skin) list.granules.push_back(i);
+    }
+    list.count = list.granules.size();
+    while (list.granules.size() % kernels::list_padding != 0) list.granules.push_back(granules.count());
+    longest = std::max(longest, list.granules.size());
+  }
+  segment.touching_wall.resize(longest + kernels::list_padding);
+  segment.touching.resize(kernels::pair_chunk + 2 * kernels::list_padding);
+}
+
+} // namespace
+
+CandidatePair* PairList::room_for(std::size_t more) {
+  const std::size_t needed = count_ + more;
+  if (needed > pairs_.size()) pairs_.grow(needed + needed / 2 + 64, count_);
+  return pairs_.data() + count_;
+}
+
+std::size_t PairList::pad(std::uint32_t ghost) {
+  std::size_t added = 0;
+  CandidatePair* end = room_for(kernels::list_padding);
+  for (; (count_ + added) % kernels::list_padding != 0; ++added) end[added] = {ghost, ghost + 1};
+  count_ += added;
+  return added;
+}
+
+std::size_t VerletList::candidates() const {
+  std::size_t sum = 0;
+  for (const Segment& segment : segments_) sum += segment.candidates;
+  return sum;
+}
+
+void VerletList::cut_into_segments(std::uint32_t granules) {
+  const int layers = grid_.shape().cells[2];
+  std::uint32_t wanted = granules < single_segment ? 1 : std::min(most_segments, granules / (single_segment / 2));
+  wanted = std::max(1U, std::min(wanted, static_cast<std::uint32_t>(layers / 2)));
+  segment_layers_.assign(1, 0);
+  for (std::uint32_t s = 1; s < wanted; ++s) {
+    const auto share = static_cast<std::uint32_t>(static_cast<std::uint64_t>(granules) * s / wanted);
+    int layer = segment_layers_.back() + 2;
+    while (layer < layers - 2 && grid_.layer_start(layer) < share) ++layer;
+    if (layer > layers - 2) break;
+    segment_layers_.push_back(layer);
+  }
+  segment_layers_.push_back(layers);
+  segments_.resize(segment_layers_.size() - 1);
+}
+
+void VerletList::search_segment(Segment& segment, int first_layer, int last_layer,
+                                const kernels::CandidateArguments& arguments, const Search& search,
+                                std::uint32_t ghost) {
+  const GridShape& shape = grid_.shape();
+  segment.first = grid_.layer_start(first_layer);
+  segment.last = grid_.layer_start(last_layer);
+  segment.blocks.clear();
+  segment.inner.clear();
+  segment.boundary.clear();
+  segment.candidates = 0;
+  Block block;
+  block.first = segment.first;
+
+  const auto finish_block = [&](std::uint32_t last) {
+    block.last = last;
+    segment.candidates -= segment.inner.pad(ghost);
+    block.last_pair = segment.inner.count();
+    segment.blocks.push_back(block);
+    block.first = last;
+    block.first_pair = block.last_pair;
+  };
+  const auto append = [&](PairList& list, IndexRange own, std::uint32_t own_end, const IndexRange* ranges, int count) {
+    std::size_t tests = (own_end > own.first ? own_end - own.first : 0) + kernels::list_padding;
+    for (int k = 0; k < count; ++k) tests += ranges[k].last - ranges[k].first + kernels::list_padding;
+    CandidatePair* to = list.room_for(tests * (own.last - own.first) + kernels::list_padding);
+    list.set_end(search.kernel(arguments, own, own_end, ranges, count, to));
+  };
+
+  for (int slow = first_layer; slow < last_layer; ++slow) {
+    const bool next_is_outside = slow + 1 == last_layer;
+    for (int middle = 0; middle < shape.cells[1]; ++middle)
+      for (int fast = 0; fast < shape.cells[0]; ++fast) {
+        const IndexRange own{grid_.cell_start(fast, middle, slow), grid_.start()[grid_.index(fast, middle, slow) + 1]};
+        if (own.first == own.last) continue;
+        if (own.first - block.first >= kernels::block_granules) finish_block(own.first);
+        const int low = std::max(fast - 1, 0), high = std::min(fast + 1, shape.cells[0] - 1);
+        const auto row_range = [&](int m, int s) {
+          return IndexRange{grid_.cell_start(low, m, s), grid_.start()[grid_.index(high, m, s) + 1]};
+        };
+        // 13 of the 26 neighbours: the next cell of the row, the next row, and three rows of the next layer.
+        const std::uint32_t own_end = grid_.start()[grid_.index(high, middle, slow) + 1];
+        std::array<IndexRange, 4> ranges;
+        int count = 0;
+        if (middle + 1 < shape.cells[1]) ranges[static_cast<std::size_t>(count++)] = row_range(middle + 1, slow);
+        if (next_is_outside) {
+          append(segment.inner, own, own_end, ranges.data(), count);
+          count = 0;
+        }
+        if (slow + 1 < shape.cells[2])
+          for (int m = std::max(middle - 1, 0); m <= std::min(middle + 1, shape.cells[1] - 1); ++m)
+            ranges[static_cast<std::size_t>(count++)] = row_range(m, slow + 1);
+        if (next_is_outside)
+          append(segment.boundary, own, 0, ranges.data(), count);
+        else
+          append(segment.inner, own, own_end, ranges.data(), count);
+      }
+  }
+  finish_block(segment.last);
+  segment.candidates += segment.inner.count() + segment.boundary.count();
+  segment.boundary.pad(ghost);
+}
+
+void VerletList::build(Granules& granules, const Vector3& size, const std::vector<Wall>& walls, const Search& search,
+                       const Team& team) {
+  grid_.sort(granules, make_grid_shape(size, search.cell_length, granules.count()), team);
+  cut_into_segments(granules.count());
+  const Coordinates coordinates(granules);
+  kernels::CandidateArguments arguments;
+  arguments.x = coordinates.x;
+  arguments.y = coordinates.y;
+  arguments.z = coordinates.z;
+  arguments.radius = coordinates.radius;
+  arguments.reach = search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0);
+
+  team.each(segments_.size(), [&](std::size_t s) {
+    coordinates.fill(granules, grid_.layer_start(segment_layers_[s]), grid_.layer_start(segment_layers_[s + 1]));
+  });
+  team.each(segments_.size(), [&](std::size_t s) {
+    search_segment(segments_[s], segment_layers_[s], segment_layers_[s + 1], arguments, search, granules.count());
+    list_walls(segments_[s], granules, walls, search.skin);
+  });
+  team.each(segments_.size(), [&](std::size_t s) { granules.clear_forces(segments_[s].first, segments_[s].last); });
+}
+
+void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall>& walls, const Search& search) {
+  const Coordinates coordinates(granules);
+  coordinates.fill(granules, 0, granules.count());
+  kernels::CandidateArguments arguments;
+  arguments.x = coordinates.x;
+  arguments.y = coordinates.y;
+  arguments.z = coordinates.z;
+  arguments.radius = coordinates.radius;
+  arguments.reach = search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0);
+
+  segments_.resize(1);
+  Segment& segment = segments_.front();
+  segment.first = 0;
+  segment.last = granules.count();
+  segment.blocks.clear();
+  segment.inner.clear();
+  segment.boundary.clear();
+  segment.candidates = 0;
+  for (std::uint32_t first = 0; first < segment.last || first == 0; first += kernels::block_granules) {
+    Block block;
+    block.first = first;
+    block.last = std::min(first + kernels::block_granules, segment.last);
+    block.first_pair = segment.inner.count();
+    for (std::uint32_t i = block.first; i < block.last; ++i) {
+      CandidatePair* to = segment.inner.room_for(segment.last - i + 2 * kernels::list_padding);
+      segment.inner.set_end(search.kernel(arguments, {i, i + 1}, segment.last, nullptr, 0, to));
+    }
+    segment.candidates -= segment.inner.pad(granules.count());
+    block.last_pair = segment.inner.count();
+    segment.blocks.push_back(block);
+  }
+  segment.candidates += segment.inner.count();
+  list_walls(segment, granules, walls, search.skin);
+  granules.clear_forces(0, granules.count());
+}
+
+} // namespace grandamp

@@ -1,0 +1,86 @@
+// The Verlet list: pairs closer than their radii and the skin, found on the half-shell grid, and the granules near each
+// wall. The rows are cut into segments of at least two cell layers, each into blocks; how they are cut depends on the
+// granules' places alone. Pairs across two segments stand apart, so that segments can be swept at the same time.
+#pragma once
+
+#include "kernels/arguments.hpp"
+#include "solver/cell_grid.hpp"
+#include "solver/walls.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace grandamp {
+
+/// A growing list of pairs, padded at the end of each block.
+class PairList {
+public:
+  void clear() noexcept { count_ = 0; }
+  std::size_t count() const noexcept { return count_; }
+  const kernels::CandidatePair* data() const noexcept { return pairs_.data(); }
+  /// Room for `more` pairs at the end; where they go.
+  kernels::CandidatePair* room_for(std::size_t more);
+  void set_end(const kernels::CandidatePair* end) noexcept { count_ = static_cast<std::size_t>(end - pairs_.data()); }
+  /// Fills up to a multiple of list_padding; returns how many pairs were added.
+  std::size_t pad(std::uint32_t ghost);
+
+private:
+  RowArray<kernels::CandidatePair> pairs_;
+  std::size_t count_ = 0;
+};
+
+/// Granules near one wall.
+struct WallList {
+  std::vector<std::uint32_t> granules; ///< padded
+  std::size_t count = 0;
+};
+
+struct Block {
+  std::uint32_t first = 0, last = 0;         ///< rows
+  std::size_t first_pair = 0, last_pair = 0; ///< in the segment's inner list
+};
+
+struct Segment {
+  std::uint32_t first = 0, last = 0;
+  std::vector<Block> blocks;
+  PairList inner;
+  PairList boundary; ///< pairs whose second granule is in the next segment
+  std::vector<WallList> walls;
+  std::vector<std::uint32_t> outside;           ///< granules whose centre is beyond a wall, or not finite
+  std::size_t candidates = 0;                   ///< without padding
+  std::vector<kernels::CandidatePair> touching; ///< scratch of the sweep
+  std::vector<std::uint32_t> touching_wall;
+};
+
+class VerletList {
+public:
+  struct Search {
+    kernels::CandidateKernel* kernel = nullptr;
+    bool alike = true;
+    double largest_radius = 0.0; ///< m
+    double skin = 0.0;           ///< m
+    double cell_length = 0.0;    ///< at least 2 largest_radius + skin, m
+  };
+
+  /// Sorts the granules and lists the pairs and wall candidates. Force rows come out cleared.
+  void build(Granules& granules, const Vector3& size, const std::vector<Wall>& walls, const Search& search,
+             const Team& team);
+  /// Lists from a search of all pairs, without a grid; the rows keep their order.
+  void build_from_all_pairs(Granules& granules, const std::vector<Wall>& walls, const Search& search);
+
+  std::vector<Segment>& segments() noexcept { return segments_; }
+  const std::vector<Segment>& segments() const noexcept { return segments_; }
+  std::size_t candidates() const;
+  const CellGrid& grid() const noexcept { return grid_; }
+
+private:
+  void cut_into_segments(std::uint32_t granules);
+  void search_segment(Segment& segment, int first_layer, int last_layer, const kernels::CandidateArguments& arguments,
+                      const Search& search, std::uint32_t ghost);
+
+  CellGrid grid_;
+  std::vector<Segment> segments_;
+  std::vector<int> segment_layers_; ///< first layer of each segment, and the end
+};
+
+} // namespace grandamp
