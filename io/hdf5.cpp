@@ -1,11 +1,14 @@
 #include "io/hdf5.hpp"
 
+#include "io/text_file.hpp"
 #include "solver/errors.hpp"
 
 #include <algorithm>
 
 namespace grandamp::hdf5 {
 namespace {
+
+constexpr std::size_t memory_increment = 1 << 22; // bytes
 
 /// What HDF5's error stack says at its most specific level; the system's own words if they are in it.
 std::string last_reason() {
@@ -52,16 +55,18 @@ File File::create(const std::filesystem::path& path) {
   // Members listed in the order of their creation: a history's columns keep theirs.
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), H5P_DEFAULT), H5Fclose);
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_core(access.id(), memory_increment, false);
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
   if (!file) throw FileError(message(path, "create the file"));
-  return File(path, std::move(file));
+  return File(path, std::move(file), true);
 }
 
 File File::open(const std::filesystem::path& path) {
   const Silence silence;
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) throw FileError(message(path, "open the file"));
-  return File(path, std::move(file));
+  return File(path, std::move(file), false);
 }
 
 void File::fail(const std::string& what) const {
@@ -80,9 +85,14 @@ void File::require(herr_t status, const std::string& what) const {
 void File::flush() {
   const Silence silence;
   require(H5Fflush(file_.id(), H5F_SCOPE_GLOBAL), "write the file");
+  const ssize_t size = H5Fget_file_image(file_.id(), nullptr, 0);
+  void* image = nullptr; // HDF5's own buffer: no copy of a file that may be large
+  if (size < 0 || H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &image) < 0) fail("write the file");
+  replace_file(path_, {*static_cast<const char**>(image), static_cast<std::size_t>(size)});
 }
 
 void File::close() {
+  if (written_) flush();
   const Silence silence;
   if (!file_.close()) fail("close the file");
 }

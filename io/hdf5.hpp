@@ -53,6 +53,10 @@ private:
 };
 
 /// An open file. Every member throws FileError ("PATH: cannot WHAT: REASON").
+///
+/// A file that is created stays in memory until flush or close puts it in its place, whole, by ordinary system calls:
+/// HDF5 1.10 does not survive a write that fails (it ends the program when it closes the file), and a program that is
+/// killed while HDF5 writes leaves a file that nothing can open.
 class File {
 public:
   /// Replaces a file that exists.
@@ -61,6 +65,7 @@ public:
 
   const std::filesystem::path& path() const noexcept { return path_; }
   void flush();
+  /// Flushes what was written.
   void close();
 
   bool has(const std::string& name) const;
@@ -89,7 +94,8 @@ public:
   std::string text_attribute(const std::string& object, const std::string& name) const;
 
 private:
-  File(std::filesystem::path path, Handle file) : path_(std::move(path)), file_(std::move(file)) {}
+  File(std::filesystem::path path, Handle file, bool written)
+      : path_(std::move(path)), file_(std::move(file)), written_(written) {}
   [[noreturn]] void fail(const std::string& what) const;
   Handle owned(hid_t id, Handle::Close how, const std::string& what) const;
   void require(herr_t status, const std::string& what) const;
@@ -99,6 +105,7 @@ private:
 
   std::filesystem::path path_;
   Handle file_;
+  bool written_ = false; ///< created here, so that it lives in memory
 };
 
 } // namespace grandamp::hdf5

@@ -10,7 +10,8 @@
 
 namespace grandamp {
 
-/// Writes results.h5 as a run goes. Throws FileError with the path and the reason.
+/// Writes results.h5 as a run goes. Throws FileError with the path and the reason. On the disk there is a whole file at
+/// any time, the last one flushed; all of it is held in memory too, 8 bytes per number.
 class ResultsWriter {
 public:
   /// Replaces the file if there is one. `ledger`: whether samples carry the energy ledger, and so its columns.
@@ -25,7 +26,7 @@ public:
   void flush();
   /// The granules by id; `time` in seconds. At most once.
   void write_final(const GranuleTable& granules, double time);
-  /// Flushes and closes; without it the destructor does so and cannot tell of an error.
+  /// Flushes and closes; without it what came after the last flush is lost.
   void close();
 
 private:

@@ -170,9 +170,11 @@ private:
       tell_warnings();
       tell_progress(now);
     }
-    if (now - flushed_ >= 5.0) {
-      flushed_ = now;
+    if (now >= next_flush_) {
       results_.flush();
+      // Each flush writes the whole file: let them take at most a twentieth of the time.
+      const double after = seconds_since(start_);
+      next_flush_ = after + std::max(5.0, 20.0 * (after - now));
     }
   }
 
@@ -203,7 +205,7 @@ private:
   Clock::time_point start_;
   std::int64_t steps_between_looks_ = 1;
   double told_ = 0.0;
-  double flushed_ = 0.0;
+  double next_flush_ = 5.0;
 };
 
 } // namespace

@@ -5,7 +5,10 @@
 
 #include <doctest/doctest.h>
 
+#include <sys/resource.h>
+
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 
 using namespace grandamp;
@@ -148,6 +151,23 @@ TEST_CASE("what is wrong with a file is told with its name and the reason") {
   CHECK_THROWS_AS(read_history(folder / "cut.h5"), FileError);
   CHECK_THROWS_WITH_AS(export_granules({}, folder / "no/granules.csv"), doctest::Contains("No such file"), FileError);
   CHECK_THROWS_WITH_AS(export_granules(three_granules(), "/dev/full"), doctest::Contains("No space left"), FileError);
+}
+
+TEST_CASE("a disk that is full costs what came after the last flush, and no more") {
+  const TemporaryFolder folder;
+  ResultsWriter writer(folder / "results.h5", scene_text, false);
+  writer.append(sample_number(0));
+  writer.flush();
+  struct rlimit old {};
+  getrlimit(RLIMIT_FSIZE, &old);
+  const struct rlimit small { 20000, old.rlim_max };
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  for (int row = 1; row < 5000; ++row) writer.append(sample_number(row));
+  CHECK_THROWS_WITH_AS(writer.close(), doctest::Contains("File too large"), FileError);
+  setrlimit(RLIMIT_FSIZE, &old);
+  std::signal(SIGXFSZ, handler);
+  CHECK(read_history(folder / "results.h5").columns.front().size() == 1);
 }
 
 TEST_CASE("h5py and h5dump read the file") {
