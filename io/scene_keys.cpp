@@ -82,7 +82,10 @@ std::string table_of_path(std::string_view path) {
   while (!path.empty()) {
     const std::size_t dot = path.find('.');
     const std::string_view part = path.substr(0, dot);
-    if (!is_index(part)) table += (table.empty() ? "" : ".") + std::string(part);
+    if (!is_index(part)) {
+      if (!table.empty()) table += '.';
+      table += part;
+    }
     path.remove_prefix(dot == std::string_view::npos ? path.size() : dot + 1);
   }
   return table;
