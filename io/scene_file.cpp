@@ -2,6 +2,7 @@
 
 #include "io/scene_reader.hpp"
 #include "io/scene_toml.hpp"
+#include "io/scene_writer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -61,7 +62,7 @@ public:
     if (!reading_.findings.empty()) fail();
     const bool moved = make_file_paths_absolute();
     for (const auto& [key, source] : reading_.overridden) document_.lines[key] = 0;
-    if (moved || !overrides.empty()) document_.text = heading(overrides) + write_toml(tree_);
+    if (moved || !overrides.empty()) document_.text = heading(overrides) + write_scene_tree(tree_);
     return std::move(document_);
   }
 

@@ -2,11 +2,11 @@
 
 #include "io/nearest_name.hpp"
 #include "io/scene_keys.hpp"
+#include "io/scene_writer.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <sstream>
 
 namespace grandamp {
 
@@ -27,11 +27,7 @@ void show(const toml::node& node, std::string& text, int depth) {
   } else if (node.is_table()) {
     text += "{...}";
   } else {
-    std::ostringstream stream;
-    node.visit([&stream](const auto& value) {
-      if constexpr (toml::is_value<decltype(value)>) stream << value;
-    });
-    text += stream.str();
+    text += written(node);
   }
 }
 

@@ -1,8 +1,9 @@
 #include "io/scene_toml.hpp"
 
+#include "io/scene_writer.hpp"
+
 #include <charconv>
 #include <fmt/format.h>
-#include <sstream>
 
 namespace grandamp {
 
@@ -115,7 +116,8 @@ toml::table parsed_value(const std::string& text) {
   }
   try {
     toml::table holder{{"value", text}};
-    if (parse_toml(write_toml(holder)) == holder) return holder; // not so with bytes that are no UTF-8
+    if (parse_toml("value = " + written(*holder.get("value"))) == holder)
+      return holder; // not so with bytes that are no UTF-8
   } catch (const SceneError&) {
   }
   return {};
@@ -147,12 +149,6 @@ toml::table parse_toml(const std::string& text) {
     throw SceneError(Problem{"", "", fmt::format("column {}: {}", at.column, error.description()),
                              "TOML, as described at https://toml.io", static_cast<int>(at.line)});
   }
-}
-
-std::string write_toml(const toml::table& tree) {
-  std::ostringstream stream;
-  stream << toml::toml_formatter{tree} << '\n';
-  return stream.str();
 }
 
 void apply_override(toml::table& tree, const std::string& text, SceneReading& reading) {

@@ -1,4 +1,4 @@
-// TOML text to a tree and back, safe for any bytes, and overrides of single keys. Internal to io.
+// TOML text to a tree, safe for any bytes, and overrides of single keys. Internal to io.
 #pragma once
 
 #include "io/scene_table.hpp"
@@ -11,9 +11,6 @@ namespace grandamp {
 
 /// Throws SceneError with line and column where the text is no TOML, or nests or is larger than any scene would.
 toml::table parse_toml(const std::string& text);
-
-/// The tree as TOML text.
-std::string write_toml(const toml::table& tree);
 
 /// Puts one "KEY=VALUE" into the tree: the key dotted, list items by index, the value TOML or a bare word. Tables on
 /// the way are made. Notes the key in reading.overridden, or a fault in reading.findings.
