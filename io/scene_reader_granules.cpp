@@ -106,7 +106,7 @@ private:
   }
 
   bool file_has(const std::vector<double> GranuleFile::*column) const {
-    return file_ != nullptr && !(file_->*column).empty();
+    return file_ != nullptr && file_->faults.empty() && !(file_->*column).empty();
   }
 
   void read_radius() {
