@@ -1,5 +1,7 @@
 #include "solver/cell_grid.hpp"
 
+#include "solver/measures.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +10,8 @@ namespace grandamp {
 GridShape make_grid_shape(const Vector3& size, double cell_length, std::size_t granules) {
   const double limit = 4.0 * static_cast<double>(granules) + 512.0;
   std::array<double, 3> cells{};
-  for (double length = cell_length;; length *= 1.1) {
+  // Without granules there is no length to ask for: one cell.
+  for (double length = cell_length > 0.0 ? cell_length : norm(size);; length *= 1.1) {
     double total = 1.0;
     for (std::size_t k = 0; k < 3; ++k) total *= cells[k] = std::max(1.0, std::floor(size[k] / length));
     if (total <= limit) break;
