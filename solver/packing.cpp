@@ -11,7 +11,7 @@ namespace packing {
 
 Room::Room(const Enclosure& enclosure)
     : cylinder_(enclosure.shape == EnclosureShape::cylinder), axis_(static_cast<std::size_t>(enclosure.axis)),
-      diameter_(enclosure.diameter), box_(bounding_box(enclosure)) {}
+      diameter_(enclosure.diameter), box_(bounding_box(enclosure)), volume_(volume_of(enclosure)) {}
 
 double Room::to_wall(const Vector3& p) const {
   double nearest = INFINITY, square = 0.0;
@@ -167,9 +167,11 @@ Placement place_granules(const Plan& plan) {
   if (by_count) {
     RandomNumbers random(scene.seed, 2);
     placement.to_be_poured = scene.packing == PackingKind::settled;
-    const bool loose = placement.to_be_poured && packing::place_on_lattice(room, scene.gravity, spheres, random);
-    // Too full for a lattice: dense places can still be found by pushing overlaps apart.
-    if (!loose && !packing::place_at_random(room, spheres, random)) refuse(plan);
+    // Too full for a loose lattice: random places can still be found. Too full for those: a close packing with gaps.
+    const bool found = (placement.to_be_poured && packing::place_on_lattice(room, scene.gravity, spheres, random)) ||
+                       packing::place_at_random(room, spheres, random) ||
+                       packing::place_on_close_packing(room, spheres, random);
+    if (!found) refuse(plan);
   }
   placement.position = std::move(spheres.position);
   return placement;

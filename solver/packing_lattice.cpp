@@ -124,7 +124,63 @@ bool fill(const Room& room, const Vector3& up, Spheres& spheres, std::vector<std
   return true;
 }
 
+/// Centres of a hexagonal close packing in the room: rows along one axis, layers stacked along another. The layers
+/// are spread evenly from wall to wall.
+std::vector<Vector3> close_packing(const Room& room, double radius, std::size_t rows, std::size_t layers) {
+  const std::size_t across = 3 - rows - layers;
+  const double diameter = 2.0 * radius * (1.0 + 1.0e-9);
+  const auto spread = [&](std::size_t k, double pitch) {
+    const double free = room.box()[k] - diameter;
+    const double gaps = std::max(0.0, std::floor(free / pitch));
+    return std::pair{static_cast<int>(gaps) + 1, gaps > 0.0 ? free / gaps : 0.0};
+  };
+  const auto [layer_count, layer_pitch] = spread(layers, diameter * std::sqrt(2.0 / 3.0));
+  // The spheres of every second layer sit in the hollows of the others, a third of the rows' distance further.
+  const double row_pitch = diameter * std::sqrt(0.75), shift = row_pitch / 3.0;
+  const double free_across = room.box()[across] - diameter, free_along = room.box()[rows] - diameter;
+  std::vector<Vector3> centres;
+  for (int layer = 0; layer < layer_count; ++layer) {
+    const double first_row = layer % 2 == 0 ? 0.0 : shift;
+    for (int row = 0; first_row + row * row_pitch <= free_across; ++row) {
+      const double first = (row + layer) % 2 == 0 ? 0.0 : 0.5 * diameter;
+      for (int place = 0; first + place * diameter <= free_along; ++place) {
+        Vector3 p{};
+        p[layers] = 0.5 * diameter + layer * layer_pitch;
+        p[across] = 0.5 * diameter + first_row + row * row_pitch;
+        p[rows] = 0.5 * diameter + first + place * diameter;
+        if (room.to_wall(p) >= radius) centres.push_back(p);
+      }
+    }
+  }
+  return centres;
+}
+
 } // namespace
+
+bool place_on_close_packing(const Room& room, Spheres& spheres, RandomNumbers& random) {
+  std::vector<std::size_t> free;
+  double radius = 0.0;
+  SphereGrid grid(room.box(), spheres.position, spheres.radius);
+  for (std::size_t i = 0; i < spheres.radius.size(); ++i) {
+    if (spheres.placed[i])
+      grid.insert(i);
+    else
+      free.push_back(i);
+    if (!spheres.placed[i]) radius = std::max(radius, spheres.radius[i]);
+  }
+  std::vector<Vector3> best;
+  for (std::size_t rows = 0; rows < 3; ++rows)
+    for (std::size_t layers = 0; layers < 3; ++layers) {
+      if (rows == layers) continue;
+      std::vector<Vector3> sites = close_packing(room, radius, rows, layers);
+      std::erase_if(sites, [&](const Vector3& site) { return !grid.is_free(site, radius); });
+      if (sites.size() > best.size()) best = std::move(sites);
+    }
+  if (best.size() < free.size()) return false;
+  random.shuffle(best);
+  for (std::size_t n = 0; n < free.size(); ++n) spheres.position[free[n]] = best[n];
+  return true;
+}
 
 bool place_on_lattice(const Room& room, const Vector3& gravity, Spheres& spheres, RandomNumbers& random) {
   const Vector3 up = up_of(gravity);

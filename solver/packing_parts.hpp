@@ -14,6 +14,7 @@ public:
   explicit Room(const Enclosure& enclosure);
 
   const Vector3& box() const noexcept { return box_; }
+  double volume() const noexcept { return volume_; } ///< m^3
   /// From a point to the nearest wall, m; negative outside.
   double to_wall(const Vector3& p) const;
   /// The nearest point at which a sphere is inside; the middle where it does not fit.
@@ -25,6 +26,7 @@ private:
   std::size_t axis_;
   double diameter_;
   Vector3 box_;
+  double volume_;
 };
 
 /// Spheres to be placed, those of `placed` being where they must stay.
@@ -37,6 +39,10 @@ struct Spheres {
 /// Anywhere without overlaps: one after the other where that is easy, else from random points by pushing overlaps
 /// apart. False if there is no room.
 bool place_at_random(const Room& room, Spheres& spheres, RandomNumbers& random);
+
+/// On the sites of a hexagonal close packing, those that are left over empty at random: for enclosures too full for
+/// random places. False (and nothing is placed) if there are too few sites.
+bool place_on_close_packing(const Room& room, Spheres& spheres, RandomNumbers& random);
 
 /// On a jittered lattice, the lowest sites first, sizes mixed. False (and nothing is placed) if that takes more room
 /// than there is.

@@ -1,5 +1,7 @@
 #include "solver/packing_parts.hpp"
 
+#include "solver/measures.hpp"
+
 #include <numeric>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -36,21 +38,20 @@ class OverlapRemoval {
 public:
   OverlapRemoval(const Room& room, Spheres& spheres, double swelling)
       : room_(room), spheres_(spheres), swelling_(swelling), count_(spheres.radius.size()), push_(count_),
-        move_(count_), neighbours_(count_) {
+        move_(count_), listed_at_(count_), neighbours_(count_) {
     const double smallest = *std::min_element(spheres.radius.begin(), spheres.radius.end());
     skin_ = 0.6 * smallest;
-    longest_move_ = 0.4 * smallest;
+    longest_move_ = 0.3 * smallest;
   }
 
   bool run(int sweeps) {
     double moved = skin_; // the first sweep lists the neighbours
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-      if (2.0 * moved >= skin_) {
-        list_neighbours();
-        moved = 0.0;
-      }
+      if (2.0 * moved >= skin_) list_neighbours();
       if (push_apart() <= 0.0) return true;
-      moved += move();
+      moved = move();
+      // Swollen, they come to rest clear of one another; the less room there is, the less swelling that allows.
+      if (sweep % patience == patience - 1) swelling_ = std::max(0.5 * swelling_, 3.0e-4);
     }
     return false;
   }
@@ -59,6 +60,7 @@ private:
   void list_neighbours() {
     SphereGrid grid(room_.box(), spheres_.position, spheres_.radius);
     for (std::size_t i = 0; i < count_; ++i) grid.insert(i);
+    listed_at_ = spheres_.position;
     for_all(count_, [&](std::size_t i) {
       std::vector<std::uint32_t>& own = neighbours_[i];
       own.clear();
@@ -96,6 +98,7 @@ private:
     });
   }
 
+  /// Returns how far the spheres are at most from where their neighbours were listed, m.
   double move() {
     constexpr double step = 0.25, momentum = 0.9;
     return largest_of(count_, [&](std::size_t i) {
@@ -108,9 +111,12 @@ private:
         for (double& component : move) component *= longest_move_ / length;
       Vector3& p = spheres_.position[i];
       p = room_.confined({p[0] + move[0], p[1] + move[1], p[2] + move[2]}, spheres_.radius[i]);
-      return std::min(length, longest_move_);
+      const Vector3& q = listed_at_[i];
+      return std::sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
     });
   }
+
+  static constexpr int patience = 250; ///< sweeps
 
   const Room& room_;
   Spheres& spheres_;
@@ -120,8 +126,17 @@ private:
   double longest_move_;
   std::vector<Vector3> push_;
   std::vector<Vector3> move_;
+  std::vector<Vector3> listed_at_;
   std::vector<std::vector<std::uint32_t>> neighbours_;
 };
+
+constexpr double random_close_packing = 0.64;
+
+double solid_fraction(const Room& room, const Spheres& spheres) {
+  double solid = 0.0;
+  for (const double radius : spheres.radius) solid += sphere_volume(radius);
+  return solid / room.volume();
+}
 
 } // namespace
 
@@ -148,11 +163,9 @@ bool place_at_random(const Room& room, Spheres& spheres, RandomNumbers& random) 
     all = all && found;
   }
   if (all) return true;
-  // Swollen a little they come to rest clear of one another; near the densest packings there is no room for that.
-  const int sweeps = count > 200000 ? 2000 : 6000;
-  for (const double swelling : {5.0e-3, 1.0e-3, 1.0e-4})
-    if (OverlapRemoval(room, spheres, swelling).run(sweeps)) return true;
-  return false;
+  const double swelling =
+      std::clamp(0.4 * (std::cbrt(random_close_packing / solid_fraction(room, spheres)) - 1.0), 1.0e-3, 0.03);
+  return OverlapRemoval(room, spheres, swelling).run(2000);
 }
 
 } // namespace grandamp::packing
