@@ -85,6 +85,7 @@ const std::vector<Variation>& variations() {
          s.contact.wall.reset();
          s.populations[0].young = 3.0e9;
          s.populations[0].poisson = 0.35;
+         use_step(s, 2.0e-6);
        }},
       {"elastic moduli, a stiffer wall",
        [](Scene& s) {
@@ -94,6 +95,7 @@ const std::vector<Variation>& variations() {
          s.contact.wall->reference_radius.reset();
          s.contact.wall->young = 2.0e11;
          s.contact.wall->poisson = 0.29;
+         use_step(s, 2.0e-6);
          s.populations[0].young = 3.0e9;
          s.populations[0].poisson = 0.35;
        }},
@@ -117,6 +119,7 @@ const std::vector<Variation>& variations() {
          half.young = 3.0e10;
          half.poisson = 0.29;
          half.mass *= 5.0;
+         use_step(s, 2.0e-6);
          for (auto member : {&Population::positions, &Population::velocities, &Population::spins}) {
            (half.*member).erase((half.*member).begin(), (half.*member).begin() + 40);
            (s.populations[0].*member).resize(40);

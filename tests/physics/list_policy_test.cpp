@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <string>
+
 using namespace grandamp;
 using namespace grandamp::test;
 
@@ -32,11 +34,18 @@ Scene struck_bed() {
   return scene;
 }
 
-VerletStatistics audited(Scene scene, ListPolicy policy) {
+/// `may_stop`: a list that misses a contact lets granules sink into one another or into a wall; a guard may then end
+/// the run, and what was counted until then is told.
+VerletStatistics audited(Scene scene, ListPolicy policy, bool may_stop = false) {
   scene.verlet.policy = policy;
   scene.verlet.audit = 1;
   SolverRun run(scene);
-  run_all(run, scene);
+  try {
+    run_all(run, scene);
+  } catch (const GuardError& stopped) {
+    if (!may_stop) throw;
+    MESSAGE("stopped by a guard: ", std::string(stopped.what()));
+  }
   return run.simulation().verlet();
 }
 
@@ -56,7 +65,7 @@ TEST_CASE("granules at rest in a box that starts at 3 m/s: no policy that guards
 }
 
 TEST_CASE("granules at rest in a box that starts at 3 m/s: the paper's policy misses contacts, and they are counted") {
-  const VerletStatistics seen = audited(struck_gas(), ListPolicy::predicted);
+  const VerletStatistics seen = audited(struck_gas(), ListPolicy::predicted, true);
   MESSAGE("predicted: ", seen.missed, " contacts missed for ", seen.missed_pair_steps, " pair steps");
   CHECK(seen.missed > 0);
   CHECK(seen.missed_pair_steps >= seen.missed);
@@ -64,9 +73,9 @@ TEST_CASE("granules at rest in a box that starts at 3 m/s: the paper's policy mi
 
 TEST_CASE("a fixed interval that is too long misses contacts, and they are counted") {
   Scene scene = struck_gas();
-  scene.verlet.interval = 400;
-  scene.verlet.skin = 0.05;
-  CHECK(audited(scene, ListPolicy::fixed).missed > 0);
+  scene.verlet.interval = 60;
+  scene.verlet.skin = 0.02;
+  CHECK(audited(scene, ListPolicy::fixed, true).missed > 0);
   scene.verlet.interval = 1;
   CHECK(audited(scene, ListPolicy::fixed).missed == 0);
 }

@@ -62,11 +62,15 @@ double ReferenceEnclosure::prescribed_displacement(double time) const {
   return excitation_.amplitude * std::sin(2.0 * std::numbers::pi * excitation_.frequency * time);
 }
 
-double ReferenceEnclosure::initial_velocity() const {
-  if (structure_) return structure_->velocity;
-  if (excitation_.kind != ExcitationKind::prescribed) return 0.0;
+double ReferenceEnclosure::prescribed_velocity(double time) const {
+  if (structure_ || excitation_.kind != ExcitationKind::prescribed) return 0.0;
   if (excitation_.velocity) return *excitation_.velocity;
-  return 2.0 * std::numbers::pi * excitation_.frequency * excitation_.amplitude;
+  const double circular = 2.0 * std::numbers::pi * excitation_.frequency;
+  return circular * excitation_.amplitude * std::cos(circular * time);
+}
+
+double ReferenceEnclosure::initial_velocity() const {
+  return structure_ ? structure_->velocity : prescribed_velocity(0.0);
 }
 
 double ReferenceEnclosure::force(double time) const {
@@ -130,6 +134,7 @@ ReferenceHost ReferenceEnclosure::start(double reaction) const {
 ReferenceRun::ReferenceRun(const Scene& scene, double step)
     : scene_(scene), step_(step), enclosure_(scene, step), populations_(scene.populations.size()) {
   const Law common = laws_of(scene.contact);
+  rotation_ = common.rotation;
   const ContactConstants& granule = scene.contact.granule;
   for (const Population& a : scene.populations) {
     for (const Population& b : scene.populations) {
@@ -173,6 +178,23 @@ ReferenceRun::ReferenceRun(const Scene& scene, double step)
     }
   }
 
+  // Friction at many walls' contacts brakes the same structure at once. Each contact's cap takes as the structure's
+  // part the mass over the number of granules that can lean on the walls: all of them, or what fits on the walls side
+  // by side in hexagons.
+  if (enclosure_.structure() && !initial_.empty()) {
+    const Enclosure& e = scene.enclosure;
+    Vector3 l = e.size;
+    if (e.shape == EnclosureShape::cylinder) {
+      l = {e.diameter, e.diameter, e.diameter};
+      l[static_cast<std::size_t>(e.axis)] = e.height;
+    }
+    double smallest = initial_.front().radius;
+    for (const Granule& one : initial_) smallest = std::min(smallest, one.radius);
+    const double area = 2.0 * (l[0] * l[1] + l[1] * l[2] + l[2] * l[0]);
+    const double fit = area / (2.0 * std::sqrt(3.0) * smallest * smallest);
+    wall_slip_inverse_mass_ = std::max(1.0, std::min(fit, static_cast<double>(initial_.size()))) / enclosure_.mass();
+  }
+
   // Half a step back: u(-1/2) = v0 - dt/2 (F/m + g) in the laboratory, less the enclosure's V(-1/2).
   const Forces at_start = forces(initial_);
   state_.host = enclosure_.start(at_start.reaction);
@@ -213,8 +235,9 @@ ReferenceRun::Forces ReferenceRun::forces(const std::vector<Granule>& moving) co
           enclosure_.structure()
               ? reference::wall_effective_mass(one.mass, wall.outward, enclosure_.direction(), enclosure_.mass())
               : one.mass;
+      const double slip_mass = 1.0 / (1.0 / one.mass + wall_slip_inverse_mass_);
       const reference::Contact contact =
-          reference::wall_contact(one, wall.distance, wall.outward, wall_law(i), step_, damping_mass, one.mass);
+          reference::wall_contact(one, wall.distance, wall.outward, wall_law(i), step_, damping_mass, slip_mass);
       if (!contact.touching) continue;
       add(all.force[i], 1.0, contact.force_i);
       add(all.torque[i], 1.0, contact.torque_i);
@@ -272,8 +295,8 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
     after.velocity =
         (enclosure_.prescribed_displacement(now + step_) - enclosure_.prescribed_displacement(now)) / step_;
     middle.displacement = enclosure_.prescribed_displacement(now);
-    middle.velocity = 0.5 * (before.velocity + after.velocity);
-    middle.work_in = -acting.reaction * middle.velocity * 0.5 * step_;
+    middle.velocity = enclosure_.prescribed_velocity(now);
+    middle.work_in = -acting.reaction * 0.5 * (before.velocity + after.velocity) * 0.5 * step_;
     after.work_in = 2.0 * middle.work_in;
   }
   Vector frame_kick{};
@@ -317,8 +340,9 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
     state.ledger.structural_damping += host.loss;
   };
 
+  // Laboratory velocities at t_n: the mean of the half-step ones, so that a free granule's does not change at all.
   if (sample || synchronised)
-    for (Granule& one : mean) add(one.velocity, middle.velocity, enclosure_.direction());
+    for (Granule& one : mean) add(one.velocity, 0.5 * (before.velocity + after.velocity), enclosure_.direction());
   if (synchronised) *synchronised = mean;
   if (sample) {
     const Ledger start_of_step = state.ledger;
@@ -336,7 +360,9 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
     for (std::size_t i = 0; i < count; ++i) {
       Vector laboratory = mean[i].position;
       add(laboratory, middle.displacement, enclosure_.direction());
-      sample->stored.kinetic += reference::kinetic_energy(mean[i]);
+      Granule counted = mean[i];
+      if (!rotation_) counted.spin = {}; // spins that nothing can change are no part of the balance
+      sample->stored.kinetic += reference::kinetic_energy(counted);
       sample->stored.gravitational -= mean[i].mass * dot(scene_.gravity, laboratory);
     }
     state.ledger = start_of_step;

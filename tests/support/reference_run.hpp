@@ -33,6 +33,7 @@ public:
   /// From `from` to `to` (s; backwards if to < from), the reaction held.
   ReferenceHost advance_structure(ReferenceHost host, double from, double to, double reaction) const;
   double prescribed_displacement(double time) const;
+  double prescribed_velocity(double time) const;
   double force(double time) const; ///< on the structure, N
   double stored(const ReferenceHost& host) const;
 
@@ -89,9 +90,11 @@ private:
 
   Scene scene_;
   double step_;
+  bool rotation_ = false;
   ReferenceEnclosure enclosure_;
   std::size_t populations_;
   std::vector<reference::Law> pair_laws_, wall_laws_;
+  double wall_slip_inverse_mass_ = 0.0; ///< the structure's part in the cap of a wall's friction, 1/kg
   std::vector<std::int32_t> population_;
   std::vector<reference::Granule> initial_; ///< velocities relative to the enclosure at t = 0
   State state_;
