@@ -183,7 +183,10 @@ Scene imploding_cluster(std::size_t count, std::uint64_t seed) {
 }
 
 Scene table_5(std::size_t count, double duration) {
-  const double radius = 1.85e-3;
+  return vertical_damper(count, 1.85e-3, 15.91, duration);
+}
+
+Scene vertical_damper(std::size_t count, double radius, double frequency, double duration) {
   Scene scene = box_scene(1.0, radius);
   scene.gravity = {0.0, 0.0, -9.81};
   scene.enclosure.size = {0.025, 0.025, 0.0359};
@@ -193,15 +196,18 @@ Scene table_5(std::size_t count, double duration) {
   scene.contact.wall->restitution = 0.89;
   scene.structure = bare_structure().structure;
   scene.excitation = bare_structure().excitation;
+  scene.excitation.frequency = frequency;
   scene.time.duration = duration;
   scene.time.impact_speed = 2.0;
 
-  // Six by six in a layer; the gaps are small enough to settle soon, and the jitter keeps contacts generic.
+  // The lattice's gaps are small enough to settle soon, and the jitter keeps contacts generic.
   Random random(5);
-  const double pitch = 3.76e-3, margin = 0.5 * (0.025 - 5.0 * pitch), jitter = 0.02e-3;
+  const double pitch = 2.0 * radius + 0.06e-3, jitter = 0.02e-3;
+  const auto across = static_cast<std::size_t>((0.025 - 2.0 * radius) / pitch) + 1;
+  const double margin = 0.5 * (0.025 - static_cast<double>(across - 1) * pitch);
   for (std::size_t n = 0; n < count; ++n) {
-    const auto column = static_cast<double>(n % 6), row = static_cast<double>(n / 6 % 6);
-    const auto layer = static_cast<double>(n / 36);
+    const auto column = static_cast<double>(n % across), row = static_cast<double>(n / across % across);
+    const auto layer = static_cast<double>(n / across / across);
     const Vector3 shift = scaled(jitter, random.in_unit_ball());
     add_granule(scene, {margin + pitch * column + shift[0], margin + pitch * row + shift[1],
                         radius + 0.03e-3 + pitch * layer + shift[2]});

@@ -44,8 +44,11 @@ Scene gas(std::size_t count, double side, double speed, std::uint64_t seed);
 /// walls.
 Scene imploding_cluster(std::size_t count, std::uint64_t seed);
 
-/// Table 5: box 25 x 25 x 35.9 mm, 317 granules of 1.85 mm on a jittered lattice just above one another, the structure
-/// forced vertically at 15.91 Hz. `count` of them. T_c is told for `impact_speed`, duration for `duration`.
+/// Table 5's box (25 x 25 x 35.9 mm) and structure, forced vertically; `count` granules of `radius` on a jittered
+/// lattice just above the floor.
+Scene vertical_damper(std::size_t count, double radius, double frequency, double duration);
+
+/// Table 5: granules of 1.85 mm (317 of them in the paper), 15.91 Hz.
 Scene table_5(std::size_t count, double duration);
 
 /// The bare structure of Table 5: no granules.
