@@ -30,6 +30,10 @@ Plan pouring_plan(const Plan& plan) {
   scene.time.duration = longest_pour;
   scene.verlet = {};
   for (Population& population : scene.populations) population.speed = 0.0;
+  // Friction that has no hold at zero slip only makes the way to rest long: the bed would creep for seconds.
+  scene.contact.friction = FrictionLaw::none;
+  scene.contact.granule.friction.reset();
+  if (scene.contact.wall) scene.contact.wall->friction.reset();
   if (scene.contact.damping != NormalDamping::tsuji) {
     scene.contact.damping = NormalDamping::tsuji;
     scene.contact.granule.normal_damping.reset();
