@@ -14,7 +14,7 @@ namespace grandamp {
 
 /// Energies by mechanism since t = 0, J. Losses are positive.
 struct Ledger {
-  double work_in = 0.0;            ///< by the excitation (a force, or a prescribed motion) on the enclosure
+  double work_in = 0.0; ///< by the excitation (a force, or a prescribed motion) on the enclosure
   double structural_damping = 0.0;
   double normal_granule = 0.0;
   double normal_wall = 0.0;
@@ -42,12 +42,13 @@ struct Sample {
   Ledger ledger;             ///< up to this instant; zeros when the ledger is off
 };
 
-/// Granules by id (scene order), in the contract's frames: positions in the enclosure's, velocities in the laboratory's.
+/// Granules by id (scene order), in the contract's frames: positions in the enclosure's, velocities in the
+/// laboratory's.
 struct GranuleTable {
-  std::vector<Vector3> position;   ///< m
-  std::vector<Vector3> velocity;   ///< m/s
-  std::vector<Vector3> spin;       ///< rad/s
-  std::vector<double> radius;      ///< m
+  std::vector<Vector3> position; ///< m
+  std::vector<Vector3> velocity; ///< m/s
+  std::vector<Vector3> spin;     ///< rad/s
+  std::vector<double> radius;    ///< m
   std::vector<std::int32_t> population;
 };
 
@@ -63,9 +64,9 @@ struct VerletStatistics {
 };
 
 struct GuardStatistics {
-  double max_overlap = 0.0;  ///< over the smaller radius
-  double max_speed = 0.0;    ///< of a granule relative to the enclosure, m/s
-  double max_closing = 0.0;  ///< greatest closing speed met at a contact, m/s
+  double max_overlap = 0.0; ///< over the smaller radius
+  double max_speed = 0.0;   ///< of a granule relative to the enclosure, m/s
+  double max_closing = 0.0; ///< greatest closing speed met at a contact, m/s
   std::int64_t escaped = 0;
 };
 
@@ -79,8 +80,8 @@ struct ResponseStatistics {
 };
 
 struct RunOptions {
-  int threads = 0;  ///< 0: chosen
-  std::string isa;  ///< "generic", "avx2", "avx512"; empty: the best this machine runs
+  int threads = 0; ///< 0: chosen
+  std::string isa; ///< "generic", "avx2", "avx512"; empty: the best this machine runs
   /// Called now and then while granules are poured, with the simulated time and the mean kinetic energy over m g d.
   std::function<void(double, double)> pouring_progress;
 };
