@@ -295,6 +295,8 @@ const std::vector<BadScene> bad_scenes{
     {"seed = 7", "seed = = 7", {"bad.toml:2: column", "allowed: TOML"}},
     {"seed = 7", "seed = 7\nseed = 8", {"bad.toml:3: column"}},
     {"[verlet]", "[verlet", {"bad.toml:39: column"}},
+    {"size = [0.025, 0.025, 0.0359]", "size = {a = [1, }", {"bad.toml:6: column"}},
+    {"seed = 7", "s\u00e9ed = 7", {"bad.toml:2: a character outside ASCII", "within \"strings\""}},
     {"title = \"good\"", std::string("title = \"go\0d\"", 14), {"bad.toml:1: column"}},
     {"title = \"good\"", "title = \"\xff\xfe\"", {"bad.toml:1: column"}},
 };
@@ -340,7 +342,7 @@ TEST_CASE("what is hardly a scene is refused, never a crash") {
   CHECK(message_of(std::string(5000, '\0')).find("bad.toml:1:") != std::string::npos);
   std::string rubbish;
   for (unsigned i = 0, x = 1; i < 100000; ++i) rubbish += static_cast<char>((x = x * 1664525U + 1013904223U) >> 24);
-  CHECK(message_of(rubbish).find("allowed: TOML") != std::string::npos);
+  CHECK(message_of(rubbish).find("bad.toml:1: ") != std::string::npos);
   CHECK(message_of("a = " + std::string(100000, '[')).find("bad.toml:1:") != std::string::npos);
   std::string key = "a";
   for (int i = 0; i < 100000; ++i) key += ".a";
