@@ -61,6 +61,13 @@ std::string deepest_contact(const GuardView& view) {
 
 constexpr const char* shorter_step = "raise time.steps_per_contact or time.impact_speed";
 
+/// Policies that can miss a contact find it late, and deep.
+std::string list_advice(const GuardView& view) {
+  const ListPolicy policy = view.plan.scene.verlet.policy;
+  if (policy != ListPolicy::predicted && policy != ListPolicy::fixed) return "";
+  return "; or the list was too old when they met: verlet.policy = \"guarded\" misses no contact";
+}
+
 } // namespace
 
 double closing_speed_limit(const Plan& plan) {
@@ -82,8 +89,8 @@ GuardError not_finite(const GuardView& view) {
 GuardError too_deep(const GuardView& view, double overlap) {
   return GuardError(fmt::format(
       "an overlap of {:.0f} % of a radius {} (Hertz allows none beyond {:.0f} %): {}; make the contact stiffer "
-      "(contact.granule.stiffness, contact.wall.stiffness), or {}",
-      100.0 * overlap, when(view), 100.0 * overlap_stop, deepest_contact(view), shorter_step));
+      "(contact.granule.stiffness, contact.wall.stiffness), or {}{}",
+      100.0 * overlap, when(view), 100.0 * overlap_stop, deepest_contact(view), shorter_step, list_advice(view)));
 }
 
 GuardError too_fast(const GuardView& view, double closing_speed) {
@@ -100,8 +107,8 @@ GuardError escaped(const GuardView& view, std::int64_t count) {
     if (who.empty() && !segment.outside.empty()) who = granule_text(view, segment.outside.front());
   return GuardError(
       fmt::format("{} granule{} left the enclosure {}: {}; the walls are too soft or the step is too long: "
-                  "raise contact.wall.stiffness, or {}",
-                  count, count == 1 ? "" : "s", when(view), who, shorter_step));
+                  "raise contact.wall.stiffness, or {}{}",
+                  count, count == 1 ? "" : "s", when(view), who, shorter_step, list_advice(view)));
 }
 
 std::string deep_overlap_warning(const GuardView& view, double overlap) {

@@ -146,6 +146,7 @@ void Stepper::place(const Placement& start) {
 
 void Stepper::take_half_step_back() {
   // Forces at t = 0, with the velocities of t = 0, through one kick that is then halved and turned round.
+  enclosure_ = {motion_.initial_displacement(), motion_.initial_velocity()};
   rebuild_if_due();
   results_.assign(list_.segments().size(), {});
   const Kernels& kernels = kernels_for(false);
