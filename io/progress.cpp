@@ -12,7 +12,8 @@ namespace grandamp {
 
 std::string readable_seconds(double seconds) {
   if (!std::isfinite(seconds)) return "?";
-  if (seconds < 10.0) return fmt::format("{:.1f} s", std::max(seconds, 0.0));
+  if (seconds < 1.0) return fmt::format("{:.2g} s", std::max(seconds, 0.0));
+  if (seconds < 10.0) return fmt::format("{:.1f} s", seconds);
   if (seconds >= 1e9) return "decades";
   const auto whole = static_cast<long>(std::lround(seconds));
   if (whole < 60) return fmt::format("{} s", whole);

@@ -28,6 +28,18 @@ Json stored_json(const StoredEnergy& stored) {
           {"structure", stored.structure}};
 }
 
+/// Before the window there is nothing to tell of.
+Json structure_json(const RunRecord& record) {
+  const ResponseStatistics& response = record.response;
+  const bool reached = record.time > record.plan->window[0];
+  const auto known = [reached](double value) { return reached ? Json(value) : Json(nullptr); };
+  return {{"rms_displacement", known(response.rms_displacement)},
+          {"peak_displacement", known(response.peak_displacement)},
+          {"amplitude", known(response.amplitude)},
+          {"steady", response.steady},
+          {"window", record.plan->window}};
+}
+
 Json energy_json(const RunRecord& record) {
   const Ledger& ledger = record.end.ledger;
   Json energy{{"initial", stored_json(record.initial.stored)}};
@@ -100,13 +112,7 @@ std::string summary_text(const RunRecord& record) {
   summary["precision"] = "double";
   summary["effects"] = plan.effects;
   summary["effects_left_out"] = plan.effects_left_out;
-  if (plan.scene.structure) {
-    summary["structure"] = {{"rms_displacement", record.response.rms_displacement},
-                            {"peak_displacement", record.response.peak_displacement},
-                            {"amplitude", record.response.amplitude},
-                            {"steady", record.response.steady},
-                            {"window", plan.window}};
-  }
+  if (plan.scene.structure) summary["structure"] = structure_json(record);
   if (plan.scene.output.energy) summary["energy"] = energy_json(record);
   summary["verlet"] = {{"builds", record.verlet.builds},
                        {"mean_interval", record.verlet.mean_interval},

@@ -75,7 +75,7 @@ inline Outcome shell(const TemporaryFolder& folder, const std::string& command) 
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), content_of(output), content_of(errors)};
 }
 
-inline Outcome grandamp(const TemporaryFolder& folder, const std::string& arguments) {
+inline Outcome program(const TemporaryFolder& folder, const std::string& arguments) {
   return shell(folder, std::string(GRANDAMP_PROGRAM) + " " + arguments);
 }
 
