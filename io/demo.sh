@@ -24,6 +24,6 @@ for run in without with; do
   build/grandamp export $output/$run history -o $output/$run.csv
 done
 echo
-python3 io/plot_histories.py -o $output/histories.png --title "Table 5 at resonance" \
+"$python" io/plot_histories.py -o $output/histories.png --title "Table 5 at resonance" \
   "without granules=$output/without.csv" "with granules=$output/with.csv"
-python3 io/demo_tables.py $output
+"$python" io/demo_tables.py $output

@@ -10,6 +10,9 @@ demo_packages=("${build_packages[@]}" python3 python3-matplotlib python3-numpy)
 test_packages=("${build_packages[@]}" binutils clang-14 clang-format-14 clang-tidy-14 doctest-dev git libbenchmark-dev
   libclang-rt-14-dev python3 python3-h5py python3-numpy qemu-user)
 
+# The interpreter that the python3-* packages are for; another may come first in PATH.
+python=/usr/bin/python3
+
 # install_packages NAME...: what is missing, and nothing (no network either) if nothing is.
 install_packages() {
   local missing=() package
