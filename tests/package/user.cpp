@@ -5,7 +5,7 @@
 #include <cstdio>
 
 int main(int, char** arguments) {
-  grandamp::Simulation simulation(grandamp::read_scene(arguments[1]));
+  grandamp::Simulation simulation(grandamp::read_scene(arguments[1]).scene);
   while (!simulation.finished()) simulation.step();
   std::printf("%.17g\n", simulation.response().rms_displacement);
 }
