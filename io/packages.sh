@@ -2,7 +2,7 @@
 # shellcheck shell=bash disable=SC2034
 
 build_packages=(g++ cmake ninja-build libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libspdlog-dev libtbb-dev
-  libtomlplusplus-dev libxsimd-dev nlohmann-json3-dev)
+  libtomlplusplus-dev libxsimd-dev libxxhash-dev nlohmann-json3-dev)
 
 demo_packages=("${build_packages[@]}" python3 python3-matplotlib python3-numpy)
 
