@@ -19,9 +19,13 @@ public:
   std::int64_t missed = 0;            ///< contacts that began unlisted, each once
   std::int64_t missed_pair_steps = 0; ///< steps that they lasted, to the resolution of the interval
 
-private:
+  using Contacts = std::set<std::pair<std::uint32_t, std::uint32_t>>;
   /// Contacts unlisted at the last comparison, by ids (walls: id and count + wall).
-  std::set<std::pair<std::uint32_t, std::uint32_t>> unlisted_;
+  const Contacts& unlisted() const noexcept { return unlisted_; }
+  void restore_unlisted(Contacts contacts) { unlisted_ = std::move(contacts); }
+
+private:
+  Contacts unlisted_;
 };
 
 } // namespace grandamp
