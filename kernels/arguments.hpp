@@ -110,8 +110,19 @@ struct IndexRange {
   std::uint32_t last = 0; ///< one past
 };
 
+/// Splits a list by the gap between two granules' surfaces.
+struct SplitArguments {
+  const PositionRow* position = nullptr;
+  CandidatePair* pairs = nullptr; ///< split in place; room for list_padding more is read
+  std::size_t count = 0;
+  CandidatePair* scratch = nullptr; ///< count + list_padding entries
+  double reach = 0.0;               ///< gap below which a pair is near; alike: both radii and that gap, m
+};
+
 using PairKernel = void(const PairArguments&, ContactResult&);
 using WallKernel = void(const WallArguments&, WallResult&);
+/// Moves the near pairs to the front, both kinds in their order; returns how many are near.
+using SplitKernel = std::size_t(const SplitArguments&);
 using MotionKernel = void(const MotionArguments&, MotionResult&);
 /// Granules [own.first, own.last) against those after them up to own_end, and against `count` ranges. Appends at `to`
 /// (which must have room for every pair tested, and list_padding more) and returns the new end.

@@ -1,4 +1,5 @@
-// Candidate search: one cell's granules against contiguous ranges of sorted granules.
+// Candidate search: one cell's granules against contiguous ranges of sorted granules; and the division of the pairs
+// found into near and far ones.
 #pragma once
 
 #include "kernels/arguments.hpp"
@@ -30,6 +31,34 @@ CandidatePair* candidate_kernel(const CandidateArguments& a, IndexRange own, std
     for (int k = 0; k < count; ++k) search(ranges[k].first, ranges[k].last);
   }
   return to;
+}
+
+/// alike: `reach` holds both radii and the gap.
+template <class S, bool alike> std::size_t split_kernel(const SplitArguments& a) {
+  using Vector = typename S::Vector;
+  using Row = typename S::Row;
+  constexpr std::size_t width = S::width;
+  const Row last_flipped = S::row_set(1.0, 1.0, 1.0, -1.0);
+  const Vector reach = S::broadcast(a.reach);
+  std::size_t near = 0, far = 0;
+  for (std::size_t k = 0; k < a.count; k += width) {
+    Row rows[width];
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      const std::size_t pair = k + lane < a.count ? k + lane : k;
+      rows[lane] = S::row_fnma(last_flipped, S::row_load(&a.position[a.pairs[pair].first].x),
+                               S::row_load(&a.position[a.pairs[pair].second].x));
+    }
+    Vector x, y, z, radii;
+    S::columns(rows, x, y, z, radii);
+    const Vector square = S::fma(z, z, S::fma(y, y, x * x));
+    const Vector limit = alike ? reach : reach + radii;
+    const unsigned listed = a.count - k < width ? (1U << (a.count - k)) - 1U : (1U << width) - 1U;
+    const unsigned is_near = S::less(square, limit * limit) & listed;
+    far += S::select(a.pairs + k, ~is_near & listed, a.scratch + far);
+    near += S::select(a.pairs + k, is_near, a.pairs + near);
+  }
+  for (std::size_t k = 0; k < far; ++k) a.pairs[near + k] = a.scratch[k];
+  return near;
 }
 
 } // namespace grandamp::kernels

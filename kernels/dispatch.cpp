@@ -6,7 +6,8 @@ namespace grandamp::kernels {
 
 #define GRANDAMP_DECLARE(set)                                                                                          \
   extern const KernelTable set##_none, set##_energies, set##_ledger, set##_ledger_and_energies;                        \
-  extern CandidateKernel* const set##_candidates[2];
+  extern CandidateKernel* const set##_candidates[2];                                                                   \
+  extern SplitKernel* const set##_split[2];
 GRANDAMP_DECLARE(generic)
 #ifdef GRANDAMP_HAVE_AVX2
 GRANDAMP_DECLARE(avx2)
@@ -21,17 +22,20 @@ namespace {
 struct InstructionSetTables {
   const KernelTable* by_observation[4];
   CandidateKernel* const* candidates;
+  SplitKernel* const* split;
 };
 
 const InstructionSetTables generic_tables = {
-    {&generic_none, &generic_energies, &generic_ledger, &generic_ledger_and_energies}, generic_candidates};
+    {&generic_none, &generic_energies, &generic_ledger, &generic_ledger_and_energies},
+    generic_candidates,
+    generic_split};
 #ifdef GRANDAMP_HAVE_AVX2
-const InstructionSetTables avx2_tables = {{&avx2_none, &avx2_energies, &avx2_ledger, &avx2_ledger_and_energies},
-                                          avx2_candidates};
+const InstructionSetTables avx2_tables = {
+    {&avx2_none, &avx2_energies, &avx2_ledger, &avx2_ledger_and_energies}, avx2_candidates, avx2_split};
 #endif
 #ifdef GRANDAMP_HAVE_AVX512
 const InstructionSetTables avx512_tables = {
-    {&avx512_none, &avx512_energies, &avx512_ledger, &avx512_ledger_and_energies}, avx512_candidates};
+    {&avx512_none, &avx512_energies, &avx512_ledger, &avx512_ledger_and_energies}, avx512_candidates, avx512_split};
 #endif
 
 const InstructionSetTables& tables(InstructionSet set) {
@@ -104,6 +108,10 @@ MotionKernel* motion_kernel_for(InstructionSet set, MotionEffects effects) {
 }
 CandidateKernel* candidate_kernel_for(InstructionSet set, bool alike) {
   return tables(set).candidates[alike ? 1 : 0];
+}
+
+SplitKernel* split_kernel_for(InstructionSet set, bool alike) {
+  return tables(set).split[alike ? 1 : 0];
 }
 
 } // namespace grandamp::kernels

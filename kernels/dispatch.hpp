@@ -18,5 +18,6 @@ WallKernel* plane_kernel_for(InstructionSet set, ContactEffects effects);
 WallKernel* side_kernel_for(InstructionSet set, ContactEffects effects);
 MotionKernel* motion_kernel_for(InstructionSet set, MotionEffects effects);
 CandidateKernel* candidate_kernel_for(InstructionSet set, bool alike);
+SplitKernel* split_kernel_for(InstructionSet set, bool alike);
 
 } // namespace grandamp::kernels

@@ -26,7 +26,7 @@ struct SkinTuner {
 /// The age of the list under a policy. A plain struct: all of it is state of the run.
 struct ListAge {
   std::int64_t steps = 0;   ///< since the list was built
-  double travelled = 0.0;   ///< guarded: sum of v_max dt, relative to the enclosure, m
+  double travelled = 0.0;   ///< sum of v_max dt, relative to the enclosure, m
   double farthest = 0.0;    ///< displacement: the largest since the list was built, m
   std::int64_t allowed = 0; ///< predicted: interval set at the rebuild, steps
   bool built = false;

@@ -138,6 +138,25 @@ double Stepper::wall_forces(const Kernels& kernels) {
   return reaction;
 }
 
+double Stepper::approach_share() const {
+  return skin_ > 0.0 ? 2.0 * age_.travelled / skin_ : 1.0;
+}
+
+namespace {
+
+/// Asks for the rows that the next block will reach: partners in the layer ahead come in no order that a processor
+/// would guess. Returns `last`.
+std::uint32_t touch_rows(const kernels::GranuleArrays& rows, std::uint32_t first, std::uint32_t last) {
+  for (std::uint32_t i = first; i < last; ++i) {
+    __builtin_prefetch(&rows.position[i], 1);
+    __builtin_prefetch(&rows.motion[i], 1);
+    __builtin_prefetch(&rows.force[i], 1);
+  }
+  return last > first ? last : first;
+}
+
+} // namespace
+
 kernels::PairArguments Stepper::pair_arguments(Segment& segment) {
   kernels::PairArguments a;
   a.granules = granules_.arrays();
@@ -152,17 +171,19 @@ kernels::PairArguments Stepper::pair_arguments(Segment& segment) {
 }
 
 void Stepper::boundary_forces(const Kernels& kernels) {
+  const double approach = approach_share();
   team_.each(list_.segments().size(), [&](std::size_t s) {
     Segment& segment = list_.segments()[s];
     if (segment.boundary.count() == 0) return;
     kernels::PairArguments a = pair_arguments(segment);
     a.pairs = segment.boundary.data();
-    a.count = segment.boundary.count();
+    a.count = segment.boundary_pairs.to_test(approach);
     kernels.pair(a, results_[s].pairs);
   });
 }
 
 void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity) {
+  const double approach = approach_share();
   team_.each(list_.segments().size(), [&](std::size_t s) {
     Segment& segment = list_.segments()[s];
     kernels::PairArguments pairs = pair_arguments(segment);
@@ -171,9 +192,13 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
     motion.time_step = time_step_;
     std::copy_n(kick.begin(), 3, motion.kick);
     std::copy_n(frame_velocity.begin(), 3, motion.frame_velocity);
-    for (const Block& block : segment.blocks) {
-      pairs.pairs = segment.inner.data() + block.first_pair;
-      pairs.count = block.last_pair - block.first_pair;
+    std::uint32_t touched = segment.first;
+    for (std::size_t b = 0; b < segment.blocks.size(); ++b) {
+      const Block& block = segment.blocks[b];
+      if (touch_ahead_ && b + 1 < segment.blocks.size())
+        touched = touch_rows(motion.granules, touched, segment.blocks[b + 1].front);
+      pairs.pairs = segment.inner.data() + block.pairs.first;
+      pairs.count = block.pairs.to_test(approach);
       kernels.pair(pairs, results_[s].pairs);
       motion.first = block.first;
       motion.last = block.last;

@@ -10,6 +10,7 @@
 #include "solver/packing.hpp"
 #include "solver/plan.hpp"
 #include "solver/rebuild_policy.hpp"
+#include "solver/run_state.hpp"
 #include "solver/simulation.hpp"
 #include "solver/team.hpp"
 #include "solver/verlet_list.hpp"
@@ -35,6 +36,10 @@ struct StepRecord {
 class Stepper {
 public:
   Stepper(const Plan& plan, const Placement& start, kernels::InstructionSet isa, int threads);
+  /// Goes on where the stepper that the state was taken from was, by the same bits. Throws StateError.
+  Stepper(const Plan& plan, const RunState& state, kernels::InstructionSet isa, int threads);
+  /// Fills in all that a Stepper remembers.
+  void save(RunState& state) const;
 
   /// One step from t_n to t_(n+1). Throws GuardError.
   const StepRecord& step(bool energies);
@@ -67,7 +72,11 @@ private:
     kernels::MotionKernel* motion = nullptr;
   };
 
+  Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa, int threads);
   void place(const Placement& start);
+  void restore_granules(const RunState& state);
+  void restore_list(const RunState& state);
+  std::vector<double> constants() const;
   void choose_kernels();
   void take_half_step_back();
   const Kernels& kernels_for(bool energies) const;
@@ -84,6 +93,7 @@ private:
   void watch(double sum_speed_squared);
   StepRecord advance(bool energies);
   Ledger ledger_at(const StepRecord& record) const;
+  double approach_share() const; ///< how much nearer two granules may have come since the list, over the skin
   kernels::PairArguments pair_arguments(Segment& segment);
 
   const Plan plan_;
@@ -93,6 +103,7 @@ private:
   std::vector<Wall> walls_;
   Vector3 size_;
   ContactTable contacts_;
+  bool same_sizes_ = true; ///< granules of one radius and one mass
   kernels::ContactEffects contact_effects_;
   kernels::MotionEffects motion_effects_;
   Kernels plain_, with_energies_;
@@ -102,6 +113,7 @@ private:
   double enclosure_inverse_mass_ = 0.0;
   double friction_inverse_mass_ = 0.0;
   double closing_limit_ = 0.0;
+  bool touch_ahead_ = false; ///< the rows exceed the caches
 
   // The state of the run.
   std::int64_t step_number_ = 0;

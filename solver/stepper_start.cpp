@@ -70,6 +70,12 @@ double most_wall_contacts(const Plan& plan) {
 } // namespace
 
 Stepper::Stepper(const Plan& plan, const Placement& start, kernels::InstructionSet isa, int threads)
+    : Stepper(plan, all_equal(start.radius) && all_equal(start.mass), isa, threads) {
+  place(start);
+  take_half_step_back();
+}
+
+Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa, int threads)
     : plan_(plan), time_step_(plan.time_step), isa_(isa), team_(threads), walls_(make_walls(plan.scene.enclosure)),
       size_(bounding_box(plan.scene.enclosure)), contacts_(make_contact_table(plan.scene)),
       closing_limit_(closing_speed_limit(plan)), motion_(plan.scene, plan.time_step) {
@@ -77,8 +83,9 @@ Stepper::Stepper(const Plan& plan, const Placement& start, kernels::InstructionS
   contact_effects_.damping = damping_of(contact);
   contact_effects_.friction = friction_of(contact);
   contact_effects_.variety = !all_equal(contacts_.granule) || !all_equal(contacts_.wall) ? Variety::materials
-                             : !all_equal(start.radius) || !all_equal(start.mass)        ? Variety::sizes
+                             : !same_sizes                                               ? Variety::sizes
                                                                                          : Variety::alike;
+  same_sizes_ = same_sizes;
   pair_laws_ = law_rows(contacts_.granule, contact.damping);
   wall_laws_ = law_rows(contacts_.wall, contact.damping);
   friction_cap_ = friction_cap_share * (contact_effects_.rotates() ? rolling_mass_share : 1.0) / time_step_;
@@ -102,10 +109,10 @@ Stepper::Stepper(const Plan& plan, const Placement& start, kernels::InstructionS
   if (plan_.scene.verlet.cell) tuner_.largest = std::min(tuner_.largest, plan_.cell - 2.0 * plan_.largest_radius);
   search_.alike = contact_effects_.variety == Variety::alike;
   search_.kernel = kernels::candidate_kernel_for(isa_, search_.alike);
+  search_.split = kernels::split_kernel_for(isa_, search_.alike);
   search_.largest_radius = plan_.largest_radius;
 
-  place(start);
-  take_half_step_back();
+  touch_ahead_ = plan_.granules * (sizeof(PositionRow) + sizeof(MotionRow) + sizeof(kernels::ForceRow)) > 1U << 20;
 }
 
 void Stepper::choose_kernels() {

@@ -37,6 +37,30 @@ struct Coordinates {
   }
 };
 
+/// Sorts the pairs from `first` to the list's end by gap, and pads. Returns the classes' ends.
+PairRange classed(PairList& list, std::size_t first, const VerletList::Search& search, const Granules& granules,
+                  std::vector<CandidatePair>& scratch) {
+  PairRange range;
+  range.first = first;
+  const std::size_t count = list.count() - first;
+  list.room_for(kernels::list_padding);
+  if (scratch.size() < count + kernels::list_padding) scratch.resize(2 * count + kernels::list_padding);
+  kernels::SplitArguments a;
+  a.position = granules.position.data();
+  a.scratch = scratch.data();
+  const auto near = [&](std::size_t from, std::size_t to, double share) {
+    a.pairs = list.data() + from;
+    a.count = to - from;
+    a.reach = share * search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0);
+    return from + search.split(a);
+  };
+  const std::size_t half = near(first, list.count(), 0.5);
+  range.end = {near(first, half, 0.25), half, near(half, list.count(), 0.75), 0};
+  list.pad(granules.count());
+  range.end[3] = list.count();
+  return range;
+}
+
 void list_walls(Segment& segment, const Granules& granules, const std::vector<Wall>& walls, double skin) {
   segment.walls.resize(walls.size());
   segment.outside.clear();
@@ -55,10 +79,18 @@ void list_walls(Segment& segment, const Granules& granules, const std::vector<Wa
     longest = std::max(longest, list.granules.size());
   }
   segment.touching_wall.resize(longest + kernels::list_padding);
-  segment.touching.resize(kernels::pair_chunk + 2 * kernels::list_padding);
+  const std::size_t scratch = kernels::pair_chunk + 2 * kernels::list_padding;
+  if (segment.touching.size() < scratch) segment.touching.resize(scratch);
 }
 
 } // namespace
+
+std::size_t PairRange::to_test(double share) const {
+  std::size_t classes = 1;
+  while (classes < gap_classes && share >= static_cast<double>(classes) / static_cast<double>(gap_classes)) ++classes;
+  const std::size_t padded = (end[classes - 1] - first + kernels::list_padding - 1) / kernels::list_padding;
+  return std::min(padded * kernels::list_padding, end[gap_classes - 1] - first);
+}
 
 CandidatePair* PairList::room_for(std::size_t more) {
   const std::size_t needed = count_ + more;
@@ -98,7 +130,7 @@ void VerletList::cut_into_segments(std::uint32_t granules) {
 
 void VerletList::search_segment(Segment& segment, int first_layer, int last_layer,
                                 const kernels::CandidateArguments& arguments, const Search& search,
-                                std::uint32_t ghost) {
+                                const Granules& granules) {
   const GridShape& shape = grid_.shape();
   segment.first = grid_.layer_start(first_layer);
   segment.last = grid_.layer_start(last_layer);
@@ -108,14 +140,17 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
   segment.candidates = 0;
   Block block;
   block.first = segment.first;
+  std::size_t first_pair = 0;
+  std::uint32_t front = segment.first;
 
-  const auto finish_block = [&](std::uint32_t last) {
+  const auto finish_block = [&](std::uint32_t last, std::uint32_t farthest) {
     block.last = last;
-    segment.candidates -= segment.inner.pad(ghost);
-    block.last_pair = segment.inner.count();
+    block.front = farthest;
+    segment.candidates += segment.inner.count() - first_pair;
+    block.pairs = classed(segment.inner, first_pair, search, granules, segment.touching);
+    first_pair = segment.inner.count();
     segment.blocks.push_back(block);
     block.first = last;
-    block.first_pair = block.last_pair;
   };
   const auto append = [&](PairList& list, IndexRange own, std::uint32_t own_end, const IndexRange* ranges, int count) {
     std::size_t tests = (own_end > own.first ? own_end - own.first : 0) + kernels::list_padding;
@@ -130,7 +165,7 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
       for (int fast = 0; fast < shape.cells[0]; ++fast) {
         const IndexRange own{grid_.cell_start(fast, middle, slow), grid_.start()[grid_.index(fast, middle, slow) + 1]};
         if (own.first == own.last) continue;
-        if (own.first - block.first >= kernels::block_granules) finish_block(own.first);
+        if (own.first - block.first >= kernels::block_granules) finish_block(own.first, front);
         const int low = std::max(fast - 1, 0), high = std::min(fast + 1, shape.cells[0] - 1);
         const auto row_range = [&](int m, int s) {
           return IndexRange{grid_.cell_start(low, m, s), grid_.start()[grid_.index(high, m, s) + 1]};
@@ -151,11 +186,13 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
           append(segment.boundary, own, 0, ranges.data(), count);
         else
           append(segment.inner, own, own_end, ranges.data(), count);
+        front =
+            std::max(front, next_is_outside || count == 0 ? own_end : ranges[static_cast<std::size_t>(count - 1)].last);
       }
   }
-  finish_block(segment.last);
-  segment.candidates += segment.inner.count() + segment.boundary.count();
-  segment.boundary.pad(ghost);
+  finish_block(segment.last, segment.last);
+  segment.candidates += segment.boundary.count();
+  segment.boundary_pairs = classed(segment.boundary, 0, search, granules, segment.touching);
 }
 
 void VerletList::build(Granules& granules, const Vector3& size, const std::vector<Wall>& walls, const Search& search,
@@ -174,7 +211,7 @@ void VerletList::build(Granules& granules, const Vector3& size, const std::vecto
     coordinates.fill(granules, grid_.layer_start(segment_layers_[s]), grid_.layer_start(segment_layers_[s + 1]));
   });
   team.each(segments_.size(), [&](std::size_t s) {
-    search_segment(segments_[s], segment_layers_[s], segment_layers_[s + 1], arguments, search, granules.count());
+    search_segment(segments_[s], segment_layers_[s], segment_layers_[s + 1], arguments, search, granules);
     list_walls(segments_[s], granules, walls, search.skin);
   });
   team.each(segments_.size(), [&](std::size_t s) { granules.clear_forces(segments_[s].first, segments_[s].last); });
@@ -202,16 +239,17 @@ void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall
     Block block;
     block.first = first;
     block.last = std::min(first + kernels::block_granules, segment.last);
-    block.first_pair = segment.inner.count();
+    const std::size_t first_pair = segment.inner.count();
     for (std::uint32_t i = block.first; i < block.last; ++i) {
       CandidatePair* to = segment.inner.room_for(segment.last - i + 2 * kernels::list_padding);
       segment.inner.set_end(search.kernel(arguments, {i, i + 1}, segment.last, nullptr, 0, to));
     }
-    segment.candidates -= segment.inner.pad(granules.count());
-    block.last_pair = segment.inner.count();
+    segment.candidates += segment.inner.count() - first_pair;
+    block.pairs = classed(segment.inner, first_pair, search, granules, segment.touching);
+    block.front = segment.last;
     segment.blocks.push_back(block);
   }
-  segment.candidates += segment.inner.count();
+  segment.boundary_pairs = {};
   list_walls(segment, granules, walls, search.skin);
   granules.clear_forces(0, granules.count());
 }

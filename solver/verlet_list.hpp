@@ -7,6 +7,7 @@
 #include "solver/cell_grid.hpp"
 #include "solver/walls.hpp"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +18,7 @@ class PairList {
 public:
   void clear() noexcept { count_ = 0; }
   std::size_t count() const noexcept { return count_; }
+  kernels::CandidatePair* data() noexcept { return pairs_.data(); }
   const kernels::CandidatePair* data() const noexcept { return pairs_.data(); }
   /// Room for `more` pairs at the end; where they go.
   kernels::CandidatePair* room_for(std::size_t more);
@@ -35,9 +37,22 @@ struct WallList {
   std::size_t count = 0;
 };
 
+/// Pairs by the gap between their surfaces when they were listed: two granules that were a quarter of the skin apart
+/// cannot touch before both together have come a quarter of the skin nearer. A step tests only the classes that can.
+inline constexpr std::size_t gap_classes = 4;
+
+struct PairRange {
+  std::size_t first = 0;                      ///< in the list
+  std::array<std::size_t, gap_classes> end{}; ///< one past the last pair of each class; the last one with padding
+
+  /// Pairs to test when granules may have come nearer by `share` of the skin: a multiple of list_padding.
+  std::size_t to_test(double share) const;
+};
+
 struct Block {
-  std::uint32_t first = 0, last = 0;         ///< rows
-  std::size_t first_pair = 0, last_pair = 0; ///< in the segment's inner list
+  std::uint32_t first = 0, last = 0; ///< rows
+  PairRange pairs;                   ///< in the segment's inner list
+  std::uint32_t front = 0;           ///< one past the last row that its pairs reach
 };
 
 struct Segment {
@@ -45,6 +60,7 @@ struct Segment {
   std::vector<Block> blocks;
   PairList inner;
   PairList boundary; ///< pairs whose second granule is in the next segment
+  PairRange boundary_pairs;
   std::vector<WallList> walls;
   std::vector<std::uint32_t> outside;           ///< granules whose centre is beyond a wall, or not finite
   std::size_t candidates = 0;                   ///< without padding
@@ -56,6 +72,7 @@ class VerletList {
 public:
   struct Search {
     kernels::CandidateKernel* kernel = nullptr;
+    kernels::SplitKernel* split = nullptr;
     bool alike = true;
     double largest_radius = 0.0; ///< m
     double skin = 0.0;           ///< m
@@ -76,7 +93,7 @@ public:
 private:
   void cut_into_segments(std::uint32_t granules);
   void search_segment(Segment& segment, int first_layer, int last_layer, const kernels::CandidateArguments& arguments,
-                      const Search& search, std::uint32_t ghost);
+                      const Search& search, const Granules& granules);
 
   CellGrid grid_;
   std::vector<Segment> segments_;
