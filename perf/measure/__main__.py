@@ -1,0 +1,6 @@
+import sys
+
+from . import effects, kernels, paper, peers, sizes, threads
+
+{"kernels": kernels.main, "scenes": peers.scenes, "peers": peers.main, "sizes": sizes.main, "threads": threads.main,
+ "paper_table4": paper.table4, "paper_fig14": paper.fig14, "effects": effects.main}[sys.argv[1]]()
