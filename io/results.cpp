@@ -1,111 +1,129 @@
 #include "io/results.hpp"
 
-#include "io/hdf5.hpp"
-#include "io/version.hpp"
+#include "io/history_columns.hpp"
+#include "io/results_file.hpp"
 #include "solver/errors.hpp"
 
 #include <algorithm>
-#include <array>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <system_error>
 
 namespace grandamp {
 namespace {
 
-constexpr std::int64_t format_version = 1;
-constexpr std::size_t rows_per_block = 1024;
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
-struct Column {
-  const char* name;
-  const char* units;
-  const char* description;
-  bool of_ledger;
-  double (*value)(const Sample&);
-};
+constexpr std::string_view rows_kind = "history";
+constexpr double least_between_folds = 5.0; // s
+constexpr double folds_apart = 110.0;       // times what a fold costs
 
-constexpr std::array columns{
-    Column{"time", "s", "time since the start of the run", false, [](const Sample& s) { return s.time; }},
-    Column{"displacement", "m", "of the enclosure along its direction, from the equilibrium without granules", false,
-           [](const Sample& s) { return s.displacement; }},
-    Column{"velocity", "m/s", "of the enclosure along its direction", false,
-           [](const Sample& s) { return s.velocity; }},
-    Column{"excitation", "N", "force on the structure along its direction", false,
-           [](const Sample& s) { return s.excitation; }},
-    Column{"reaction", "N", "force of the granules on the enclosure along its direction", false,
-           [](const Sample& s) { return s.reaction; }},
-    Column{"kinetic", "J", "of the granules, translation and rotation, in the laboratory's frame", false,
-           [](const Sample& s) { return s.stored.kinetic; }},
-    Column{"elastic", "J", "stored in contacts", false, [](const Sample& s) { return s.stored.elastic; }},
-    Column{"gravitational", "J", "of the granules, from the laboratory height of the enclosure's origin at x = 0",
-           false, [](const Sample& s) { return s.stored.gravitational; }},
-    Column{"contacts", "1", "contacts between granules and with the enclosure", false,
-           [](const Sample& s) { return static_cast<double>(s.contacts); }},
-    Column{"work_in", "J", "work of the excitation since t = 0", true,
-           [](const Sample& s) { return s.ledger.work_in; }},
-    Column{"structural_damping", "J", "lost in the structure's own damper since t = 0", true,
-           [](const Sample& s) { return s.ledger.structural_damping; }},
-    Column{"normal_granule", "J", "lost to normal damping between granules since t = 0", true,
-           [](const Sample& s) { return s.ledger.normal_granule; }},
-    Column{"normal_wall", "J", "lost to normal damping at the enclosure since t = 0", true,
-           [](const Sample& s) { return s.ledger.normal_wall; }},
-    Column{"friction_granule", "J", "lost to friction between granules since t = 0", true,
-           [](const Sample& s) { return s.ledger.friction_granule; }},
-    Column{"friction_wall", "J", "lost to friction at the enclosure since t = 0", true,
-           [](const Sample& s) { return s.ledger.friction_wall; }},
-    Column{"structure", "J", "kinetic and spring energy of the host structure", true,
-           [](const Sample& s) { return s.stored.structure; }},
-};
-
-std::vector<double> flat(const std::vector<Vector3>& rows) {
-  std::vector<double> values;
-  values.reserve(3 * rows.size());
-  for (const Vector3& row : rows) values.insert(values.end(), row.begin(), row.end());
-  return values;
+std::size_t columns_with(bool ledger) {
+  return static_cast<std::size_t>(std::count_if(history_columns.begin(), history_columns.end(),
+                                                [&](const auto& column) { return ledger || !column.of_ledger; }));
 }
 
-std::vector<Vector3> rows_of_three(const std::vector<double>& values) {
-  std::vector<Vector3> rows(values.size() / 3);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-  return rows;
+fs::path beside(const fs::path& results, const char* name) {
+  return results.parent_path() / name;
+}
+
+fs::path rows_path(const fs::path& results) {
+  return beside(results, "history.part");
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) throw FileError(path.string() + ": cannot remove the file: " + error.message());
+}
+
+/// The log of a run that was closed, from its results file.
+RecordLog unfold_rows(const fs::path& results, std::size_t columns, std::int64_t rows) {
+  const History history = read_history(results);
+  const std::size_t there = history.columns.empty() ? 0 : history.columns.front().size();
+  if (history.columns.size() != columns || static_cast<std::int64_t>(there) < rows) {
+    throw FileError(results.string() + ": holds " + std::to_string(there) + " rows of " +
+                    std::to_string(history.columns.size()) + " histories; to go on takes " + std::to_string(rows) +
+                    " of " + std::to_string(columns));
+  }
+  // Under another name until it is whole: a log that is cut short would hide what results.h5 has.
+  const fs::path fresh = beside(results, "history.part.new");
+  RecordLog log = RecordLog::create(fresh, rows_kind, columns * sizeof(double));
+  std::vector<double> row(columns);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(rows); ++k) {
+    for (std::size_t c = 0; c < columns; ++c) row[c] = history.columns[c][k];
+    log.append(row.data());
+  }
+  log.sync();
+  log.rename(rows_path(results));
+  return log;
+}
+
+RecordLog reopen_rows(const fs::path& results, std::size_t columns, std::int64_t rows) {
+  const fs::path path = rows_path(results);
+  if (is_there(path)) {
+    RecordLog log = RecordLog::open(path, rows_kind, columns * sizeof(double));
+    if (log.count() < rows) {
+      throw FileError(path.string() + ": holds " + std::to_string(log.count()) + " whole rows; to go on takes " +
+                      std::to_string(rows));
+    }
+    log.cut(rows);
+    return log;
+  }
+  return unfold_rows(results, columns, rows);
 }
 
 } // namespace
 
 struct ResultsWriter::State {
-  struct Open {
-    const Column* column;
-    hdf5::Handle dataset;
-    std::vector<double> waiting;
-  };
+  fs::path results;
+  std::string scene_text;
+  RecordLog rows;
+  std::optional<FinalGranules> final_granules;
+  std::vector<double> row;
+  bool new_since_fold = false;
+  Clock::time_point folded;
+  double fold_cost = 0.0; ///< s, of the last one
 
-  // Datasets stand after the file, so that they are closed before it.
-  hdf5::File file;
-  std::vector<Open> open;
-  std::size_t written = 0;
+  State(fs::path path, std::string scene, RecordLog log)
+      : results(std::move(path)), scene_text(std::move(scene)), rows(std::move(log)) {
+    row.resize(rows.record_bytes() / sizeof(double));
+  }
 
-  void write_block() {
-    if (open.front().waiting.empty()) return;
-    for (Open& each : open) file.append(each.dataset, written, each.waiting);
-    written += open.front().waiting.size();
-    for (Open& each : open) each.waiting.clear();
+  void fold() {
+    const Clock::time_point start = Clock::now();
+    rows.flush();
+    RecordedRun run;
+    run.scene_text = &scene_text;
+    run.rows = &rows;
+    run.final_granules = final_granules ? &*final_granules : nullptr;
+    write_results_file(results, run);
+    new_since_fold = false;
+    folded = Clock::now();
+    fold_cost = std::chrono::duration<double>(folded - start).count();
   }
 };
 
-ResultsWriter::ResultsWriter(const std::filesystem::path& path, const std::string& scene_text, bool ledger)
-    : state_(new State{hdf5::File::create(path), {}, 0}) {
-  hdf5::File& file = state_->file;
-  file.set_attribute("/", "program", std::string("grandamp"));
-  file.set_attribute("/", "version", version());
-  file.set_attribute("/", "format_version", format_version);
-  file.write("/scene", scene_text);
-  file.create_group("/history");
-  for (const Column& column : columns) {
-    if (column.of_ledger && !ledger) continue;
-    const std::string name = std::string("/history/") + column.name;
-    state_->open.push_back({&column, file.create_column(name, rows_per_block), {}});
-    state_->open.back().waiting.reserve(rows_per_block);
-    file.set_attribute(name, "units", std::string(column.units));
-    file.set_attribute(name, "description", std::string(column.description));
-  }
-  file.flush();
+ResultsWriter::ResultsWriter(std::unique_ptr<State> state) : state_(std::move(state)) {
+  state_->fold();
+}
+
+ResultsWriter::ResultsWriter(const fs::path& results, const std::string& scene_text, bool ledger)
+    : ResultsWriter(std::make_unique<State>(
+          results, scene_text,
+          RecordLog::create(rows_path(results), rows_kind, columns_with(ledger) * sizeof(double)))) {}
+
+ResultsWriter ResultsWriter::go_on(const fs::path& results, const std::string& scene_text, bool ledger,
+                                   const ResultsPosition& from) {
+  return ResultsWriter(
+      std::make_unique<State>(results, scene_text, reopen_rows(results, columns_with(ledger), from.rows)));
 }
 
 ResultsWriter::~ResultsWriter() = default;
@@ -113,87 +131,39 @@ ResultsWriter::ResultsWriter(ResultsWriter&&) noexcept = default;
 ResultsWriter& ResultsWriter::operator=(ResultsWriter&&) noexcept = default;
 
 void ResultsWriter::append(const Sample& sample) {
-  for (auto& each : state_->open) each.waiting.push_back(each.column->value(sample));
-  if (state_->open.front().waiting.size() >= rows_per_block) state_->write_block();
+  State& state = *state_;
+  for (std::size_t c = 0; c < state.row.size(); ++c) state.row[c] = history_columns[c].value(sample);
+  state.rows.append(state.row.data());
+  state.new_since_fold = true;
 }
 
-void ResultsWriter::flush() {
-  state_->write_block();
-  state_->file.flush();
+ResultsPosition ResultsWriter::position() const {
+  return {state_->rows.count(), 0};
+}
+
+void ResultsWriter::sync() {
+  state_->rows.sync();
+}
+
+void ResultsWriter::fold() {
+  state_->fold();
+}
+
+void ResultsWriter::fold_if_due() {
+  if (!state_->new_since_fold) return;
+  const double since = std::chrono::duration<double>(Clock::now() - state_->folded).count();
+  if (since >= std::max(least_between_folds, folds_apart * state_->fold_cost)) state_->fold();
 }
 
 void ResultsWriter::write_final(const GranuleTable& granules, double time) {
-  hdf5::File& file = state_->file;
-  const std::size_t count = granules.position.size();
-  std::vector<std::int64_t> id(count);
-  for (std::size_t i = 0; i < count; ++i) id[i] = static_cast<std::int64_t>(i);
-  file.create_group("/final");
-  file.set_attribute("/final", "time", time);
-  file.write("/final/id", id);
-  file.write("/final/position", flat(granules.position), 3);
-  file.write("/final/velocity", flat(granules.velocity), 3);
-  file.write("/final/spin", flat(granules.spin), 3);
-  file.write("/final/radius", granules.radius);
-  file.write("/final/population", std::vector<std::int64_t>(granules.population.begin(), granules.population.end()));
-  const auto describe = [&file](const std::string& name, const std::string& units, const std::string& description) {
-    file.set_attribute("/final/" + name, "units", units);
-    file.set_attribute("/final/" + name, "description", description);
-  };
-  describe("id", "1", "number of the granule, in the scene's order");
-  describe("position", "m", "centre, in the enclosure's frame");
-  describe("velocity", "m/s", "of the centre, in the laboratory's frame");
-  describe("spin", "rad/s", "angular velocity");
-  describe("radius", "m", "of the granule");
-  describe("population", "1", "index of the scene's [[granules]] table, from 0");
+  state_->final_granules = FinalGranules{time, granules};
 }
 
 void ResultsWriter::close() {
   if (!state_) return;
-  state_->write_block();
-  for (auto& each : state_->open) each.dataset.close();
-  state_->file.close();
+  state_->fold();
+  remove_file(state_->rows.path());
   state_.reset();
-}
-
-History read_history(const std::filesystem::path& path) {
-  const hdf5::File file = hdf5::File::open(path);
-  if (!file.has("/history")) throw FileError(path.string() + ": holds no histories; not a results file of grandamp");
-  History history;
-  history.names = file.members("/history");
-  std::size_t rows = 0;
-  for (const std::string& name : history.names) {
-    history.columns.push_back(file.read_doubles("/history/" + name));
-    rows = history.columns.size() == 1 ? history.columns.back().size() : std::min(rows, history.columns.back().size());
-  }
-  // A run cut while a block was written may leave the first columns longer.
-  for (auto& column : history.columns) column.resize(rows);
-  return history;
-}
-
-FinalGranules read_final_granules(const std::filesystem::path& path) {
-  const hdf5::File file = hdf5::File::open(path);
-  if (!file.has("/final")) {
-    throw FileError(path.string() + ": holds no granules at the end; the run was stopped before it came there");
-  }
-  FinalGranules granules;
-  granules.time = file.double_attribute("/final", "time");
-  granules.table.position = rows_of_three(file.read_doubles("/final/position"));
-  granules.table.velocity = rows_of_three(file.read_doubles("/final/velocity"));
-  granules.table.spin = rows_of_three(file.read_doubles("/final/spin"));
-  granules.table.radius = file.read_doubles("/final/radius");
-  for (const std::int64_t population : file.read_integers("/final/population")) {
-    granules.table.population.push_back(static_cast<std::int32_t>(population));
-  }
-  const std::size_t count = granules.table.position.size();
-  if (granules.table.velocity.size() != count || granules.table.spin.size() != count ||
-      granules.table.radius.size() != count || granules.table.population.size() != count) {
-    throw FileError(path.string() + ": /final is damaged: its members differ in length");
-  }
-  return granules;
-}
-
-std::string read_stored_scene(const std::filesystem::path& path) {
-  return hdf5::File::open(path).read_text("/scene");
 }
 
 } // namespace grandamp

@@ -1,8 +1,10 @@
-// results.h5: the histories of a run, its granules at the end, and the scene. The layout is told in io/FORMAT.md.
+// results.h5: the histories of a run, its snapshots, its granules at the end, and the scene. The layout is told in
+// io/FORMAT.md.
 #pragma once
 
 #include "solver/simulation.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -10,27 +12,51 @@
 
 namespace grandamp {
 
-/// Writes results.h5 as a run goes. Throws FileError with the path and the reason. On the disk there is a whole file at
-/// any time, the last one flushed; all of it is held in memory too, 8 bytes per number.
+/// How much of a run was recorded: what a checkpoint remembers, so that a run that goes on from it knows where to cut.
+struct ResultsPosition {
+  std::int64_t rows = 0;      ///< of the histories
+  std::int64_t snapshots = 0; ///< taken
+};
+
+/// Records a run. What is appended goes to logs beside results.h5 (history.part); now and then, and at the end, they
+/// are folded: a new results.h5 is written whole beside the old one, synced and put in its place. So results.h5 can be
+/// read at any time, and a kill costs nothing that was synced. Memory stays flat; on the disk a running run takes twice
+/// its results. All members throw FileError with the path and the reason; results.h5 is then as after the last fold.
 class ResultsWriter {
 public:
-  /// Replaces the file if there is one. `ledger`: whether samples carry the energy ledger, and so its columns.
-  ResultsWriter(const std::filesystem::path& path, const std::string& scene_text, bool ledger);
+  /// `results`: the path of results.h5, which is replaced if it is there, as are the logs of an earlier run beside it.
+  /// `ledger`: whether samples carry the energy ledger, and so its columns.
+  ResultsWriter(const std::filesystem::path& results, const std::string& scene_text, bool ledger);
+  /// Goes on with a run that was stopped, killed or finished: what lies after `from` is cut off, in results.h5 too.
+  /// Throws FileError also if less than that is there.
+  static ResultsWriter go_on(const std::filesystem::path& results, const std::string& scene_text, bool ledger,
+                             const ResultsPosition& from);
+  /// Leaves everything as a kill would: the last fold and the logs.
   ~ResultsWriter();
   ResultsWriter(ResultsWriter&&) noexcept;
   ResultsWriter& operator=(ResultsWriter&&) noexcept;
 
-  /// A row of the histories. Rows are kept back and written in blocks.
+  /// A row of the histories.
   void append(const Sample& sample);
-  /// What was appended so far reaches the file, which can be read from here on even if the run is cut.
-  void flush();
-  /// The granules by id; `time` in seconds. At most once.
+  /// What was recorded so far.
+  ResultsPosition position() const;
+  /// What was recorded so far is on the disk and outlives a power cut: to be called before a checkpoint that remembers
+  /// position() is put in place.
+  void sync();
+  /// results.h5 now holds what was recorded so far.
+  void fold();
+  /// The same, if there is something new and folds have cost less than 1 % of the time so far; at most every 5 s.
+  /// Every fold writes everything anew, so they grow rarer as results grow: a run's results.h5 lags behind the run by
+  /// about a hundred times what it takes to write.
+  void fold_if_due();
+  /// The granules at the end, by id; `time` in seconds. Written by close().
   void write_final(const GranuleTable& granules, double time);
-  /// Flushes and closes; without it what came after the last flush is lost.
+  /// Folds, and removes the logs.
   void close();
 
 private:
   struct State;
+  explicit ResultsWriter(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

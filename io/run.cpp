@@ -170,12 +170,7 @@ private:
       tell_warnings();
       tell_progress(now);
     }
-    if (now >= next_flush_) {
-      results_.flush();
-      // Each flush writes the whole file: let them take at most a twentieth of the time.
-      const double after = seconds_since(start_);
-      next_flush_ = after + std::max(5.0, 20.0 * (after - now));
-    }
+    results_.fold_if_due();
   }
 
   void tell_warnings() {
@@ -205,7 +200,6 @@ private:
   Clock::time_point start_;
   std::int64_t steps_between_looks_ = 1;
   double told_ = 0.0;
-  double next_flush_ = 5.0;
 };
 
 } // namespace

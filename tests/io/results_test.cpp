@@ -50,7 +50,7 @@ std::filesystem::path written(const TemporaryFolder& folder, int rows, bool ledg
   ResultsWriter writer(folder / "results.h5", scene_text, ledger);
   for (int row = 0; row < rows; ++row) {
     writer.append(sample_number(row));
-    if (row == 1500) writer.flush(); // an unfinished block in between
+    if (row == 1500) writer.fold();
   }
   writer.write_final(three_granules(), 0.125);
   writer.close();
@@ -108,11 +108,11 @@ TEST_CASE("granules come back bit for bit, and so do none") {
   CHECK(read_history(folder / "none.h5").columns.front().empty());
 }
 
-TEST_CASE("a file that was flushed can be read though it is still open") {
+TEST_CASE("a file that was folded can be read though the run goes on") {
   const TemporaryFolder folder;
   ResultsWriter writer(folder / "results.h5", scene_text, false);
   for (int row = 0; row < 10; ++row) writer.append(sample_number(row));
-  writer.flush();
+  writer.fold();
   std::filesystem::copy_file(folder / "results.h5", folder / "copy.h5"); // as a run that was killed leaves it
   CHECK(read_history(folder / "copy.h5").columns.front().size() == 10);
   CHECK_THROWS_WITH_AS(read_final_granules(folder / "copy.h5"), doctest::Contains("stopped before"), FileError);
@@ -153,18 +153,21 @@ TEST_CASE("what is wrong with a file is told with its name and the reason") {
   CHECK_THROWS_WITH_AS(export_granules(three_granules(), "/dev/full"), doctest::Contains("No space left"), FileError);
 }
 
-TEST_CASE("a disk that is full costs what came after the last flush, and no more") {
+TEST_CASE("a disk that is full costs what came after the last fold, and no more") {
   const TemporaryFolder folder;
   ResultsWriter writer(folder / "results.h5", scene_text, false);
   writer.append(sample_number(0));
-  writer.flush();
+  writer.fold();
   struct rlimit old {};
   getrlimit(RLIMIT_FSIZE, &old);
   const struct rlimit small { 20000, old.rlim_max };
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   setrlimit(RLIMIT_FSIZE, &small);
-  for (int row = 1; row < 5000; ++row) writer.append(sample_number(row));
-  CHECK_THROWS_WITH_AS(writer.close(), doctest::Contains("File too large"), FileError);
+  const auto record_and_close = [&writer] {
+    for (int row = 1; row < 5000; ++row) writer.append(sample_number(row));
+    writer.close();
+  };
+  CHECK_THROWS_WITH_AS(record_and_close(), doctest::Contains("File too large"), FileError);
   setrlimit(RLIMIT_FSIZE, &old);
   std::signal(SIGXFSZ, handler);
   CHECK(read_history(folder / "results.h5").columns.front().size() == 1);

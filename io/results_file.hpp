@@ -1,0 +1,21 @@
+// A whole results.h5, written from what a run recorded.
+#pragma once
+
+#include "io/record_log.hpp"
+#include "io/results.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace grandamp {
+
+struct RecordedRun {
+  const std::string* scene_text = nullptr;
+  const RecordLog* rows = nullptr; ///< of the histories: doubles, in the order of history_columns; flushed
+  const FinalGranules* final_granules = nullptr; ///< null: the run is not at its end
+};
+
+/// Replaces the file as a whole: whatever goes wrong, what was there before stays. Throws FileError.
+void write_results_file(const std::filesystem::path& path, const RecordedRun& run);
+
+} // namespace grandamp
