@@ -4,8 +4,11 @@
 #include "solver/packing.hpp"
 #include "solver/pouring.hpp"
 #include "solver/response.hpp"
+#include "solver/run_state.hpp"
 #include "solver/stepper.hpp"
 
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -52,6 +55,45 @@ Placement placed(const Plan& plan, kernels::InstructionSet isa, int threads, con
   return placement;
 }
 
+ResponseAccumulator::State response_of(const RunState& s) {
+  return {s.response_samples,   s.response_sum_of_squares,    s.response_peak,
+          s.response_last_step, s.response_last_displacement, s.response_last_velocity,
+          s.response_cycle,     s.response_highest,           s.response_lowest,
+          s.response_rising,    s.response_last_turn,         s.response_turn_before,
+          s.response_amplitudes};
+}
+
+void save_response(const ResponseAccumulator::State& from, RunState& s) {
+  s.response_samples = from.samples;
+  s.response_sum_of_squares = from.sum_of_squares;
+  s.response_peak = from.peak;
+  s.response_last_step = from.last_step;
+  s.response_last_displacement = from.last_displacement;
+  s.response_last_velocity = from.last_velocity;
+  s.response_cycle = from.cycle;
+  s.response_highest = from.highest;
+  s.response_lowest = from.lowest;
+  s.response_rising = from.rising;
+  s.response_last_turn = from.last_turn;
+  s.response_turn_before = from.turn_before;
+  s.response_amplitudes = from.amplitudes;
+}
+
+/// The plan of a run that goes on: its end and its window may have been moved.
+Plan plan_of(const Scene& scene, const RunState& saved) {
+  Plan plan = make_plan(scene);
+  if (saved.steps != plan.steps) plan.scene.time.duration = static_cast<double>(saved.steps) * plan.time_step;
+  plan.steps = saved.steps;
+  plan.window = saved.window;
+  return plan;
+}
+
+/// The kernels asked for, or those with the bits of the state's.
+kernels::InstructionSet isa_for(const RunState& saved, const std::string& name) {
+  if (!name.empty()) return chosen_isa(name);
+  return saved.fused ? kernels::best_available() : kernels::InstructionSet::generic;
+}
+
 } // namespace
 
 struct Simulation::State {
@@ -60,6 +102,14 @@ struct Simulation::State {
         stepper(plan, placed(plan, isa, chosen_threads(options.threads, plan.granules), options), isa,
                 chosen_threads(options.threads, plan.granules)),
         response(plan.window, forcing_period(plan.scene.excitation), plan.time_step) {}
+
+  State(const Scene& scene, const RunState& saved, const RunOptions& options)
+      : plan(plan_of(scene, saved)), isa(isa_for(saved, options.isa)), isa_name(kernels::name(isa)),
+        stepper(plan, saved, isa, chosen_threads(options.threads, plan.granules)),
+        response(plan.window, forcing_period(plan.scene.excitation), plan.time_step), end_noted(saved.end_noted),
+        contact_samples(saved.contact_samples), contacts_sum(saved.contacts_sum) {
+    response.restore(response_of(saved));
+  }
 
   Sample sample_of(const StepRecord& record, std::int64_t step_number) const {
     Sample sample;
@@ -81,6 +131,7 @@ struct Simulation::State {
   }
 
   void note(std::int64_t step_number, const StepRecord& record) {
+    if (std::exchange(end_noted, false)) return; // the run was to end here, and goes on
     if (plan.scene.structure) response.add(step_number, record.enclosure.displacement, record.enclosure.velocity);
   }
 
@@ -96,6 +147,8 @@ struct Simulation::State {
 
 Simulation::Simulation(const Scene& scene, const RunOptions& options)
     : state_(std::make_unique<State>(scene, options)) {}
+Simulation::Simulation(const Scene& scene, const RunState& state, const RunOptions& options)
+    : state_(std::make_unique<State>(scene, state, options)) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
@@ -139,7 +192,10 @@ Sample Simulation::step_and_sample() {
 
 Sample Simulation::sample() {
   const StepRecord record = state_->stepper.trial(true);
-  if (finished() && !std::exchange(state_->end_noted, true)) state_->note(step_number(), record);
+  if (finished() && !state_->end_noted) {
+    state_->note(step_number(), record);
+    state_->end_noted = true;
+  }
   return state_->sample_of(record, step_number());
 }
 
@@ -183,6 +239,39 @@ GuardStatistics Simulation::guards() const {
 ResponseStatistics Simulation::response() const {
   return state_->response.result();
 }
+RunState Simulation::state() const {
+  RunState saved;
+  state_->stepper.save(saved);
+  saved.steps = state_->plan.steps;
+  saved.window = state_->plan.window;
+  save_response(state_->response.state(), saved);
+  saved.end_noted = state_->end_noted;
+  saved.contact_samples = state_->contact_samples;
+  saved.contacts_sum = state_->contacts_sum;
+  return saved;
+}
+
+void Simulation::end_at(std::int64_t steps, std::optional<std::array<double, 2>> window) {
+  Plan& plan = state_->plan;
+  const double now = time(), duration = static_cast<double>(steps) * plan.time_step;
+  if (steps < step_number()) throw std::invalid_argument("a run cannot end before now");
+  if (!window) {
+    window = {0.5 * duration, duration};
+    if ((*window)[0] < now) (*window)[0] = std::min(plan.window[0], now);
+  }
+  if ((*window)[0] != plan.window[0] && (*window)[0] < now)
+    throw std::invalid_argument("statistics cannot start before now");
+  ResponseAccumulator response(*window, forcing_period(plan.scene.excitation), plan.time_step);
+  if ((*window)[0] == plan.window[0])
+    response.restore(state_->response.state());
+  else
+    state_->end_noted = false;
+  state_->response = std::move(response);
+  plan.steps = steps;
+  plan.scene.time.duration = duration;
+  plan.window = *window;
+}
+
 std::vector<std::string> Simulation::take_warnings() {
   return state_->stepper.take_warnings();
 }

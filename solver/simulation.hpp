@@ -86,11 +86,17 @@ struct RunOptions {
   std::function<void(double, double)> pouring_progress;
 };
 
+struct RunState; // solver/run_state.hpp
+
 class Simulation {
 public:
   /// Places the granules (this may pour them for a while) and prepares the first step.
   /// Throws SceneError, or GuardError if the packing comes to no rest.
   Simulation(const Scene& scene, const RunOptions& options = {});
+  /// Goes on where the run that `state` was taken from was, by the same bits: on any number of threads, and on avx2 or
+  /// avx512 alike. Nothing is placed or poured. The scene must be that run's; what it says of output intervals may
+  /// differ. Throws SceneError, or StateError (solver/run_state.hpp) if the state does not belong to it.
+  Simulation(const Scene& scene, const RunState& state, const RunOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -116,6 +122,13 @@ public:
   ResponseStatistics response() const; ///< of the steps so far inside the window
   /// Warnings since the last call (deep overlaps, closing speeds above the estimate), each told once.
   std::vector<std::string> take_warnings();
+
+  /// The exact state, between two steps; nothing moves.
+  RunState state() const;
+  /// Lets the run end at another step, not before now. If `window` (s, not before now unless it starts as the present
+  /// one does) is left out, the statistics' window becomes the last half of the run, or what can still be had of it: it
+  /// goes on from the present one's start, or starts now.
+  void end_at(std::int64_t steps, std::optional<std::array<double, 2>> window = {});
 
 private:
   struct State;

@@ -1,0 +1,179 @@
+// All that a Stepper remembers, out and in.
+#include "solver/list_state.hpp"
+#include "solver/stepper.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace grandamp {
+
+using kernels::MotionRow;
+
+namespace {
+
+std::vector<double> columns_of(const RowArray<MotionRow>& rows, std::uint32_t count, double (MotionRow::*part)[3]) {
+  std::vector<double> values;
+  if (rows.size() == 0) return values;
+  values.reserve(3 * std::size_t{count});
+  for (std::uint32_t i = 0; i < count; ++i)
+    values.insert(values.end(), std::begin(rows[i].*part), std::end(rows[i].*part));
+  return values;
+}
+
+std::vector<double> places_of(const RowArray<kernels::PositionRow>& rows, std::uint32_t count) {
+  std::vector<double> values;
+  values.reserve(3 * std::size_t{count});
+  for (std::uint32_t i = 0; i < count; ++i) values.insert(values.end(), {rows[i].x, rows[i].y, rows[i].z});
+  return values;
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+bool fuses(kernels::InstructionSet isa) {
+  return isa != kernels::InstructionSet::generic;
+}
+
+} // namespace
+
+std::vector<double> Stepper::constants() const {
+  std::vector<double> values{time_step_,     friction_cap_, enclosure_inverse_mass_, friction_inverse_mass_,
+                             closing_limit_, tuner_.least,  tuner_.largest,          search_.largest_radius,
+                             plan_.cell,     plan_.skin};
+  for (const auto* laws : {&pair_laws_, &wall_laws_})
+    for (const kernels::LawRow& law : *laws) values.insert(values.end(), {law.stiffness, law.damping, law.friction});
+  // The enclosure's own motion from a state of its own, at steps far apart: sines and cosines of another mathematics
+  // library, or exponentials of another Eigen, show here.
+  EnclosureState state{motion_.initial_displacement() + 1e-3, motion_.initial_velocity() + 1e-2};
+  for (std::int64_t k = 0; k < 64; ++k) {
+    const EnclosureStep step = motion_.advance(state, 7919 * k, 0.25);
+    values.insert(values.end(), {step.displacement, step.velocity, step.velocity_after, step.excitation, step.work_in});
+  }
+  return values;
+}
+
+void Stepper::save(RunState& s) const {
+  const std::uint32_t count = granules_.count();
+  s.step_number = step_number_;
+  s.time_step = time_step_;
+  s.fused = fuses(isa_);
+  s.same_sizes = same_sizes_;
+  s.constants = constants();
+
+  s.id.assign(granules_.id.data(), granules_.id.data() + count);
+  s.population.assign(granules_.population.data(), granules_.population.data() + count);
+  s.position = places_of(granules_.position, count);
+  s.radius.resize(count);
+  s.inverse_mass.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    s.radius[i] = granules_.position[i].radius;
+    s.inverse_mass[i] = granules_.motion[i].inverse_mass;
+  }
+  s.velocity = columns_of(granules_.motion, count, &MotionRow::velocity);
+  s.surface_spin = columns_of(granules_.motion, count, &MotionRow::surface_spin);
+  s.predicted_velocity = columns_of(granules_.predicted, count, &MotionRow::velocity);
+  s.predicted_surface_spin = columns_of(granules_.predicted, count, &MotionRow::surface_spin);
+
+  s.list = state_of(list_, count);
+  s.built_at = built_at_.size() > 0 ? places_of(built_at_, count) : std::vector<double>{};
+  s.skin = skin_;
+  s.list_age = age_.steps;
+  s.list_travelled = age_.travelled;
+  s.list_farthest = age_.farthest;
+  s.list_allowed = age_.allowed;
+  s.list_built = age_.built;
+  s.tuner_skin = tuner_.skin;
+  s.tuner_factor = tuner_.factor;
+  s.tuner_last_cost = tuner_.last_cost;
+  s.tuner_rebuilds = tuner_.rebuilds;
+  s.tuner_steps = tuner_.steps;
+  s.tuner_candidates = tuner_.candidates;
+  s.builds = builds_;
+  s.build_steps = build_steps_;
+  s.candidates_sum = candidates_sum_;
+
+  s.enclosure_displacement = enclosure_.displacement;
+  s.enclosure_velocity = enclosure_.velocity;
+  s.ledger = ledger_;
+  s.guards = guards_;
+  s.warned_overlap = warned_overlap_;
+  s.warned_closing = warned_closing_;
+  s.audited = audit_.audited;
+  s.missed = audit_.missed;
+  s.missed_pair_steps = audit_.missed_pair_steps;
+  s.unlisted.clear();
+  for (const auto& [first, second] : audit_.unlisted()) s.unlisted.insert(s.unlisted.end(), {first, second});
+}
+
+Stepper::Stepper(const Plan& plan, const RunState& s, kernels::InstructionSet isa, int threads)
+    : Stepper(plan, s.same_sizes, isa, threads) {
+  check_state(s, plan);
+  if (s.fused != fuses(isa))
+    throw StateError(s.fused ? "the run used kernels that fuse multiplications and additions (avx2, avx512)"
+                             : "the run used the generic kernels");
+  if (!same_bits(constants(), s.constants))
+    throw StateError("this program, or the mathematics library of this machine, makes other constants of the scene");
+  step_number_ = s.step_number;
+  restore_granules(s);
+  restore_list(s);
+  enclosure_ = {s.enclosure_displacement, s.enclosure_velocity};
+  ledger_ = s.ledger;
+  guards_ = s.guards;
+  warned_overlap_ = s.warned_overlap;
+  warned_closing_ = s.warned_closing;
+  audit_.audited = s.audited;
+  audit_.missed = s.missed;
+  audit_.missed_pair_steps = s.missed_pair_steps;
+  Audit::Contacts contacts;
+  for (std::size_t k = 0; k + 1 < s.unlisted.size(); k += 2) contacts.emplace(s.unlisted[k], s.unlisted[k + 1]);
+  audit_.restore_unlisted(std::move(contacts));
+}
+
+void Stepper::restore_granules(const RunState& s) {
+  granules_ = Granules(s.id.size(), {.predicted = motion_effects_.integration == kernels::Integration::verlet,
+                                     .ledger = plan_.scene.output.energy});
+  const auto three = [](const std::vector<double>& values, std::size_t i, double(&to)[3]) {
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::begin(to));
+  };
+  for (std::size_t i = 0; i < s.id.size(); ++i) {
+    granules_.id[i] = s.id[i];
+    granules_.population[i] = s.population[i];
+    granules_.position[i] = {s.position[3 * i], s.position[3 * i + 1], s.position[3 * i + 2], s.radius[i]};
+    MotionRow& row = granules_.motion[i];
+    three(s.velocity, i, row.velocity);
+    three(s.surface_spin, i, row.surface_spin);
+    row.inverse_mass = s.inverse_mass[i];
+    row.inverse_radius = 1.0 / s.radius[i];
+    if (granules_.predicted.size() == 0) continue;
+    granules_.predicted[i] = row;
+    three(s.predicted_velocity, i, granules_.predicted[i].velocity);
+    three(s.predicted_surface_spin, i, granules_.predicted[i].surface_spin);
+  }
+  granules_.set_ghosts();
+}
+
+void Stepper::restore_list(const RunState& s) {
+  restore(list_, s.list, granules_.count(), walls_.size());
+  skin_ = s.skin;
+  age_ = {s.list_age, s.list_travelled, s.list_farthest, s.list_allowed, s.list_built};
+  tuner_.skin = s.tuner_skin;
+  tuner_.factor = s.tuner_factor;
+  tuner_.last_cost = s.tuner_last_cost;
+  tuner_.rebuilds = s.tuner_rebuilds;
+  tuner_.steps = s.tuner_steps;
+  tuner_.candidates = s.tuner_candidates;
+  builds_ = s.builds;
+  build_steps_ = s.build_steps;
+  candidates_sum_ = s.candidates_sum;
+  if (s.built_at.empty()) return;
+  built_at_.reset(granules_.position.size());
+  std::copy_n(granules_.position.data(), granules_.position.size(), built_at_.data());
+  for (std::size_t i = 0; i < s.id.size(); ++i) {
+    built_at_[i].x = s.built_at[3 * i];
+    built_at_[i].y = s.built_at[3 * i + 1];
+    built_at_[i].z = s.built_at[3 * i + 2];
+  }
+}
+
+} // namespace grandamp
