@@ -272,6 +272,9 @@ void Simulation::end_at(std::int64_t steps, std::optional<std::array<double, 2>>
   plan.window = *window;
 }
 
+void Simulation::set_profile(Profile* profile) {
+  state_->stepper.set_profile(profile);
+}
 std::vector<std::string> Simulation::take_warnings() {
   return state_->stepper.take_warnings();
 }

@@ -79,6 +79,8 @@ struct ResponseStatistics {
   std::vector<double> cycle_amplitudes;
 };
 
+class Profile;
+
 struct RunOptions {
   int threads = 0; ///< 0: chosen
   std::string isa; ///< "generic", "avx2", "avx512"; empty: the best this machine runs
@@ -120,6 +122,8 @@ public:
   VerletStatistics verlet() const;
   GuardStatistics guards() const;
   ResponseStatistics response() const; ///< of the steps so far inside the window
+  /// Times the phases of the steps to come into `profile` (solver/profile.hpp); null: no more.
+  void set_profile(Profile* profile);
   /// Warnings since the last call (deep overlaps, closing speeds above the estimate), each told once.
   std::vector<std::string> take_warnings();
 

@@ -91,13 +91,15 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean) {
 
 StepRecord Stepper::advance(bool energies) {
   const Kernels& kernels = kernels_for(energies);
+  if (profile_ != nullptr) profile_->prepare(list_.segments().size());
   results_.assign(list_.segments().size(), {});
   for (SegmentResult& result : results_) {
     result.pairs.max_overlap = result.walls.max_overlap = guards_.max_overlap;
     result.pairs.max_closing = result.walls.max_closing = guards_.max_closing;
   }
   const double reaction = wall_forces(kernels);
-  const EnclosureStep enclosure = motion_.advance(enclosure_, step_number_, reaction);
+  EnclosureStep enclosure;
+  timed(profile_, Phase::structure, 0, [&] { enclosure = motion_.advance(enclosure_, step_number_, reaction); });
   const Vector3& direction = motion_.direction();
   Vector3 kick = plan_.scene.gravity, frame_velocity{};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -124,13 +126,15 @@ double Stepper::wall_forces(const Kernels& kernels) {
     Segment& segment = list_.segments()[s];
     kernels::WallArguments a = shared;
     a.touching = segment.touching_wall.data();
-    for (std::size_t w = 0; w < walls_.size(); ++w) {
-      if (segment.walls[w].count == 0) continue;
-      a.surface = walls_[w].surface;
-      a.list = segment.walls[w].granules.data();
-      a.count = segment.walls[w].count;
-      (walls_[w].side ? kernels.side : kernels.plane)(a, results_[s].walls);
-    }
+    timed(profile_, Phase::walls, s, [&] {
+      for (std::size_t w = 0; w < walls_.size(); ++w) {
+        if (segment.walls[w].count == 0) continue;
+        a.surface = walls_[w].surface;
+        a.list = segment.walls[w].granules.data();
+        a.count = segment.walls[w].count;
+        (walls_[w].side ? kernels.side : kernels.plane)(a, results_[s].walls);
+      }
+    });
   });
   double reaction = 0.0;
   for (const SegmentResult& result : results_)
@@ -178,7 +182,7 @@ void Stepper::boundary_forces(const Kernels& kernels) {
     kernels::PairArguments a = pair_arguments(segment);
     a.pairs = segment.boundary.data();
     a.count = segment.boundary_pairs.to_test(approach);
-    kernels.pair(a, results_[s].pairs);
+    timed(profile_, Phase::pairs, s, [&] { kernels.pair(a, results_[s].pairs); });
   });
 }
 
@@ -199,10 +203,10 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
         touched = touch_rows(motion.granules, touched, segment.blocks[b + 1].front);
       pairs.pairs = segment.inner.data() + block.pairs.first;
       pairs.count = block.pairs.to_test(approach);
-      kernels.pair(pairs, results_[s].pairs);
+      timed(profile_, Phase::pairs, s, [&] { kernels.pair(pairs, results_[s].pairs); });
       motion.first = block.first;
       motion.last = block.last;
-      kernels.motion(motion, results_[s].motion);
+      timed(profile_, Phase::motion, s, [&] { kernels.motion(motion, results_[s].motion); });
     }
   });
 }
@@ -280,9 +284,9 @@ void Stepper::rebuild() {
   search_.skin = skin_;
   search_.cell_length = std::max(plan_.cell, 2.0 * search_.largest_radius + skin_);
   if (plan_.scene.verlet.policy == ListPolicy::all_pairs)
-    list_.build_from_all_pairs(granules_, walls_, search_);
+    timed(profile_, Phase::build, 0, [&] { list_.build_from_all_pairs(granules_, walls_, search_); });
   else
-    list_.build(granules_, size_, walls_, search_, team_);
+    list_.build(granules_, size_, walls_, search_, team_, profile_);
   for (const Segment& segment : list_.segments()) guards_.escaped += static_cast<std::int64_t>(segment.outside.size());
   if (guards_.escaped > 0) throw escaped({plan_, granules_, list_, walls_, step_number_, time_step_}, guards_.escaped);
 

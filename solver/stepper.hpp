@@ -9,6 +9,7 @@
 #include "solver/material.hpp"
 #include "solver/packing.hpp"
 #include "solver/plan.hpp"
+#include "solver/profile.hpp"
 #include "solver/rebuild_policy.hpp"
 #include "solver/run_state.hpp"
 #include "solver/simulation.hpp"
@@ -56,6 +57,8 @@ public:
   const GuardStatistics& guards() const noexcept { return guards_; }
   std::vector<std::string> take_warnings();
   kernels::InstructionSet isa() const noexcept { return isa_; }
+  /// Times the phases of the steps to come into `profile`, which must outlive them; null: no more.
+  void set_profile(Profile* profile) noexcept { profile_ = profile; }
   int threads() const noexcept { return team_.threads(); }
 
 private:
@@ -132,6 +135,7 @@ private:
   RowArray<kernels::PositionRow> built_at_; ///< displacement policy
 
   StepRecord record_;
+  Profile* profile_ = nullptr;
   std::vector<SegmentResult> results_;
   std::vector<std::string> warnings_;
   bool warned_overlap_ = false, warned_closing_ = false;

@@ -196,8 +196,14 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
 }
 
 void VerletList::build(Granules& granules, const Vector3& size, const std::vector<Wall>& walls, const Search& search,
-                       const Team& team) {
-  grid_.sort(granules, make_grid_shape(size, search.cell_length, granules.count()), team);
+                       const Team& team, Profile* profile) {
+  timed(profile, Phase::sort, 0,
+        [&] { grid_.sort(granules, make_grid_shape(size, search.cell_length, granules.count()), team); });
+  timed(profile, Phase::build, 0, [&] { search_all(granules, walls, search, team); });
+}
+
+void VerletList::search_all(Granules& granules, const std::vector<Wall>& walls, const Search& search,
+                            const Team& team) {
   cut_into_segments(granules.count());
   const Coordinates coordinates(granules);
   kernels::CandidateArguments arguments;

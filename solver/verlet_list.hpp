@@ -5,6 +5,7 @@
 
 #include "kernels/arguments.hpp"
 #include "solver/cell_grid.hpp"
+#include "solver/profile.hpp"
 #include "solver/walls.hpp"
 
 #include <array>
@@ -81,7 +82,7 @@ public:
 
   /// Sorts the granules and lists the pairs and wall candidates. Force rows come out cleared.
   void build(Granules& granules, const Vector3& size, const std::vector<Wall>& walls, const Search& search,
-             const Team& team);
+             const Team& team, Profile* profile = nullptr);
   /// Lists from a search of all pairs, without a grid; the rows keep their order.
   void build_from_all_pairs(Granules& granules, const std::vector<Wall>& walls, const Search& search);
 
@@ -92,6 +93,7 @@ public:
 
 private:
   void cut_into_segments(std::uint32_t granules);
+  void search_all(Granules& granules, const std::vector<Wall>& walls, const Search& search, const Team& team);
   void search_segment(Segment& segment, int first_layer, int last_layer, const kernels::CandidateArguments& arguments,
                       const Search& search, const Granules& granules);
 
