@@ -26,6 +26,10 @@ constexpr std::array<std::string_view, 8> contact_granule{
 constexpr std::array<std::string_view, 10> contact_wall{
     "stiffness", "reference_radius",     "restitution",        "alpha", "normal_damping",
     "friction",  "tangential_stiffness", "tangential_damping", "young", "poisson"};
+constexpr std::array<std::string_view, 11> contact_pair{
+    "between",        "stiffness", "reference_radius",     "restitution",        "alpha",
+    "normal_damping", "friction",  "tangential_stiffness", "tangential_damping", "young",
+    "poisson"};
 constexpr std::array<std::string_view, 6> structure{"mass",      "stiffness",    "damping",
                                                     "direction", "displacement", "velocity"};
 constexpr std::array<std::string_view, 7> excitation{"kind",      "static_deflection", "force",    "frequency",
@@ -42,13 +46,14 @@ struct Table {
   std::string_view header;
   Names keys;
 };
-constexpr std::array<Table, 12> tables{{{"", "the top of the file", root},
+constexpr std::array<Table, 13> tables{{{"", "the top of the file", root},
                                         {"enclosure", "[enclosure]", enclosure},
                                         {"granules", "[[granules]]", granules},
                                         {"packing", "[packing]", packing},
                                         {"contact", "[contact]", contact},
                                         {"contact.granule", "[contact.granule]", contact_granule},
                                         {"contact.wall", "[contact.wall]", contact_wall},
+                                        {"contact.pair", "[[contact.pair]]", contact_pair},
                                         {"structure", "[structure]", structure},
                                         {"excitation", "[excitation]", excitation},
                                         {"time", "[time]", time},

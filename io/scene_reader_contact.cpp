@@ -1,5 +1,6 @@
 #include "io/scene_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -21,15 +22,18 @@ public:
     read_laws();
     TableReader granule(table_.reading(), table_.table("granule"), "contact.granule");
     TableReader wall(table_.reading(), table_.table("wall"), "contact.wall");
-    if (!table_.has("granule") && granules_.any)
+    read_pairs();
+    const bool covered = pairs_cover_all(wall.exists());
+    if (!table_.has("granule") && granules_.any && !covered)
       table_.missing("granule", "how granules touch each other", "a table [contact.granule]");
     if (granule.exists()) read_constants(granule, contact_.granule);
     if (wall.exists()) {
       contact_.wall.emplace();
       read_constants(wall, *contact_.wall);
-      read_wall_material(wall);
+      read_wall_material(wall, *contact_.wall);
     }
-    if (granule.exists()) check_material(granule, wall);
+    if (granule.exists() || (covered && !table_.has("granule"))) check_material(granule, wall);
+    for (TableReader& pair : pairs_) pair.finish();
     granule.finish();
     wall.finish();
     table_.finish();
@@ -47,9 +51,64 @@ private:
     contact_.friction = friction.value_or(FrictionLaw::coulomb);
     if (table_.flag("tension") == false) table_.not_yet("tension", "tension = false", "true");
     contact_.rotation = table_.flag("rotation").value_or(true);
-    table_.pass("pair");
-    if (table_.has("pair"))
-      table_.not_yet("pair", "[[contact.pair]]", "[contact.granule] and [contact.wall], the same for all populations");
+  }
+
+  void read_pairs() {
+    for (const toml::table* table : table_.tables("pair")) {
+      TableReader& pair = pairs_.emplace_back(table_.reading(), table, fmt::format("contact.pair.{}", pairs_.size()));
+      PairContact& contact = contact_.pairs.emplace_back();
+      if (!pair.has("between"))
+        pair.missing("between", "whose contact this is", "two names of populations, or one and \"wall\"");
+      contact.between = pair.two_names("between").value_or(std::array<std::string, 2>{});
+      check_between(pair, contact.between);
+      read_constants(pair, contact.constants);
+      if (contact.between[0] == "wall" || contact.between[1] == "wall")
+        read_wall_material(pair, contact.constants);
+      else
+        for (const std::string_view key : {"young", "poisson"})
+          pair.idle(key, "two populations have their own, in [[granules]]", "no " + std::string(key));
+    }
+  }
+
+  void check_between(TableReader& pair, const std::array<std::string, 2>& between) {
+    if (between[0].empty() && between[1].empty()) return;
+    for (const std::string& name : between)
+      if (name != "wall" && (name.empty() || std::none_of(scene_.populations.begin(), scene_.populations.end(),
+                                                          [&](const Population& p) { return p.name == name; })))
+        return pair.wrong("between", fmt::format("no population has the name \"{}\"", name), names());
+    if (between[0] == "wall" && between[1] == "wall")
+      pair.wrong("between", "the wall does not touch itself", "a population and \"wall\", or two populations");
+    for (std::size_t k = 0; k + 1 < pairs_.size(); ++k) {
+      const std::array<std::string, 2>& other = contact_.pairs[k].between;
+      if (other == between || (other[0] == between[1] && other[1] == between[0]))
+        pair.wrong("between", fmt::format("contact.pair.{} is between the same two", k), "each two of them once");
+    }
+  }
+
+  std::string names() const {
+    std::string list;
+    for (const Population& population : scene_.populations)
+      if (!population.name.empty()) list += fmt::format("\"{}\", ", population.name);
+    return list + "\"wall\"";
+  }
+
+  /// The table between two; null: none of [[contact.pair]].
+  const TableReader* pair_between(const std::string& a, const std::string& b) const {
+    for (std::size_t k = 0; k < pairs_.size() && !a.empty() && !b.empty(); ++k) {
+      const std::array<std::string, 2>& between = contact_.pairs[k].between;
+      if ((between[0] == a && between[1] == b) || (between[0] == b && between[1] == a)) return &pairs_[k];
+    }
+    return nullptr;
+  }
+
+  /// Whether nothing is left for [contact.granule] to say.
+  bool pairs_cover_all(bool wall_is_given) const {
+    for (const Population& a : scene_.populations) {
+      if (!wall_is_given && pair_between(a.name, "wall") == nullptr) return false;
+      for (const Population& b : scene_.populations)
+        if (pair_between(a.name, b.name) == nullptr) return false;
+    }
+    return true;
   }
 
   void read_constants(TableReader& table, ContactConstants& constants) {
@@ -109,8 +168,7 @@ private:
     constants.friction = table.number("friction", not_negative);
   }
 
-  void read_wall_material(TableReader& wall) {
-    ContactConstants& constants = *contact_.wall;
+  void read_wall_material(TableReader& wall, ContactConstants& constants) {
     if (wall.has("stiffness")) {
       for (const std::string_view key : {"young", "poisson"}) {
         if (wall.reading().is_overridden(wall.key_path(key)) &&
@@ -126,22 +184,21 @@ private:
     if (!granules_.any) return;
     for (const std::string_view key : {"young", "poisson"})
       if (!wall.has(key))
-        wall.missing(key, "needed as [contact.wall] has no stiffness",
+        wall.missing(key, fmt::format("needed as {} has no stiffness", wall.header()),
                      "young and poisson of the wall, or stiffness and reference_radius");
   }
 
-  /// The granules' own material is needed where a contact has no stiffness, and does not apply where all have one.
+  /// A population's own material is needed where one of its contacts has no stiffness, and does not apply otherwise.
   void check_material(const TableReader& granule, const TableReader& wall) {
-    const bool pairs = !granule.has("stiffness");
-    const bool walls = wall.exists() && !wall.has("stiffness");
     for (std::size_t i = 0; i < granules_.tables.size(); ++i) {
       TableReader& population = granules_.tables[i];
+      const std::string lacking = contact_without_stiffness(i, granule, wall);
       for (const std::string_view key : {"young", "poisson"}) {
-        if (!pairs && !walls)
+        if (lacking.empty())
           population.idle(key, "the contacts' stiffnesses are given",
                           "contacts without stiffness, or no " + std::string(key));
         else if (!population.has(key) && scene_.populations[i].count > 0)
-          population.missing(key, fmt::format("needed as [contact.{}] has no stiffness", pairs ? "granule" : "wall"),
+          population.missing(key, fmt::format("needed as {} has no stiffness", lacking),
                              key == "young" ? "Young's modulus in Pa, above 0"
                                             : "Poisson's ratio, above -1 and at most 0.5");
       }
@@ -150,10 +207,24 @@ private:
     // R = r there and r/2 between two. Without [contact.wall] the solver's contact table makes it so.
   }
 
+  /// The first table without stiffness that population i's contacts are told by; empty: none.
+  std::string contact_without_stiffness(std::size_t i, const TableReader& granule, const TableReader& wall) const {
+    const std::string& own = scene_.populations[i].name;
+    const auto lacks = [](const TableReader& table) { return table.has("stiffness") ? "" : table.header(); };
+    for (const Population& other : scene_.populations) {
+      const TableReader* pair = pair_between(own, other.name);
+      if (std::string table = lacks(pair != nullptr ? *pair : granule); !table.empty()) return table;
+    }
+    const TableReader* pair = pair_between(own, "wall");
+    if (pair != nullptr) return lacks(*pair);
+    return wall.exists() ? lacks(wall) : std::string();
+  }
+
   TableReader table_;
   Contact& contact_;
   Scene& scene_;
   GranulesRead& granules_;
+  std::vector<TableReader> pairs_;
   bool faulty_;
   bool damping_known_ = true;
   bool friction_known_ = true;

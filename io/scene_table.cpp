@@ -270,6 +270,17 @@ std::optional<Vector3> TableReader::vector_of(const toml::node& node, std::strin
   return result;
 }
 
+std::optional<std::array<std::string, 2>> TableReader::two_names(std::string_view key) {
+  const toml::node* node = ask(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->size() != 2 || !(*array)[0].is_string() || !(*array)[1].is_string()) {
+    wrong_type(key, "two names: [\"a\", \"b\"]");
+    return std::nullopt;
+  }
+  return std::array{(*array)[0].value_or(std::string()), (*array)[1].value_or(std::string())};
+}
+
 std::optional<Vector3> TableReader::vector(std::string_view key, const Range& each) {
   const toml::node* node = ask(key);
   if (node == nullptr) return std::nullopt;

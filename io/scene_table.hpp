@@ -67,6 +67,7 @@ public:
 
   bool exists() const noexcept { return table_ != nullptr; }
   std::string key_path(std::string_view key) const;
+  std::string header() const { return '[' + path_ + ']'; } ///< for messages
   SceneReading& reading() const noexcept { return *reading_; }
 
   /// Whether the scene has the key; does not count as asking for it.
@@ -79,6 +80,7 @@ public:
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t low, std::int64_t high);
   std::optional<bool> flag(std::string_view key);
   std::optional<std::string> text(std::string_view key);
+  std::optional<std::array<std::string, 2>> two_names(std::string_view key);
   std::optional<Vector3> vector(std::string_view key, const Range& each = any_number);
   std::optional<Vector3> direction(std::string_view key); ///< made a unit vector
   std::optional<std::vector<Vector3>> vectors(std::string_view key);

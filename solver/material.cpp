@@ -2,9 +2,12 @@
 
 #include "solver/errors.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <optional>
 
 namespace grandamp {
 
@@ -22,33 +25,46 @@ double effective_modulus(const Elasticity& i, const Elasticity& j) {
   return 1.0 / ((1.0 - i.poisson * i.poisson) / i.young + (1.0 - j.poisson * j.poisson) / j.young);
 }
 
+/// Constants of a contact and the table that gave them.
+struct Given {
+  const ContactConstants* constants;
+  std::string table;
+};
+
+constexpr const char* wall_name = "wall";
+
 /// Collects every missing constant before it throws, each once.
 class Constants {
 public:
-  explicit Constants(const Scene& scene) : scene_(scene) {}
+  explicit Constants(const Scene& scene) : scene_(scene) { check_pairs(); }
 
-  double stiffness_of_granules(std::size_t a, std::size_t b) {
-    const ContactConstants& given = scene_.contact.granule;
+  Given of_granules(std::size_t a, std::size_t b) const {
+    const std::optional<Given> own = pair(scene_.populations[a].name, scene_.populations[b].name);
+    return own.value_or(Given{&scene_.contact.granule, "contact.granule"});
+  }
+
+  /// None: the granules' wall of their own material.
+  std::optional<Given> of_wall(std::size_t a) const {
+    std::optional<Given> own = pair(scene_.populations[a].name, wall_name);
+    if (!own && scene_.contact.wall) own = Given{&*scene_.contact.wall, "contact.wall"};
+    return own;
+  }
+
+  double stiffness_of_granules(const Given& given, std::size_t a, std::size_t b) {
     // k = stiffness sqrt(2 R / reference_radius), so that two granules of reference_radius have `stiffness`.
-    if (given.stiffness) return *given.stiffness * std::sqrt(2.0 / reference(given, "contact.granule"));
+    if (given.constants->stiffness) return *given.constants->stiffness * std::sqrt(2.0 / reference(given));
     return 4.0 / 3.0 * effective_modulus(material(a), material(b));
   }
 
-  double stiffness_of_wall(std::size_t a) {
-    // Left out: the flat wall of the granules' own material. E* is then that of two such granules, and so is C.
-    if (!scene_.contact.wall) return stiffness_of_granules(a, a);
-    const ContactConstants& given = *scene_.contact.wall;
+  double stiffness_of_wall(const Given& given, std::size_t a) {
     // k = stiffness sqrt(r / reference_radius), and R = r at a wall.
-    if (given.stiffness) return *given.stiffness / std::sqrt(reference(given, "contact.wall"));
-    const Elasticity wall{
-        require(given.young, "contact.wall.young", "needed, as contact.wall.stiffness is left out"),
-        require(given.poisson, "contact.wall.poisson", "needed, as contact.wall.stiffness is left out")};
-    check("contact.wall.young", wall.young, wall.young > 0.0, "above 0");
-    check("contact.wall.poisson", wall.poisson, wall.poisson > -1.0 && wall.poisson <= 0.5, "above -1, at most 0.5");
-    return 4.0 / 3.0 * effective_modulus(material(a), wall);
+    if (given.constants->stiffness) return *given.constants->stiffness / std::sqrt(reference(given));
+    return 4.0 / 3.0 * effective_modulus(material(a), wall_material(given));
   }
 
-  void losses(const ContactConstants& given, const std::string& table, ContactLaw& law) {
+  void losses(const Given& of, ContactLaw& law) {
+    const ContactConstants& given = *of.constants;
+    const std::string& table = of.table;
     switch (scene_.contact.damping) {
     case NormalDamping::tsuji:
       if (given.alpha)
@@ -100,12 +116,50 @@ private:
     return value.value_or(1.0); // any value will do: throw_if_any() follows
   }
 
-  double reference(const ContactConstants& given, const std::string& table) {
-    const double radius =
-        require(given.reference_radius, table + ".reference_radius", "the radius that the stiffness holds for");
-    check(table + ".reference_radius", radius, radius > 0.0, "above 0");
-    check(table + ".stiffness", *given.stiffness, *given.stiffness > 0.0, "above 0");
+  /// Names that are populations', each pair once.
+  void check_pairs() {
+    const std::vector<PairContact>& pairs = scene_.contact.pairs;
+    const auto known = [this](const std::string& name) {
+      return name == wall_name || (!name.empty() && std::any_of(scene_.populations.begin(), scene_.populations.end(),
+                                                                [&](const Population& p) { return p.name == name; }));
+    };
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const std::array<std::string, 2>& between = pairs[k].between;
+      const std::string key = fmt::format("contact.pair.{}.between", k), value = between[0] + ", " + between[1];
+      if (!known(between[0]) || !known(between[1]))
+        add(key, value, "no population of this name", "names of populations, or \"wall\"");
+      else if (between[0] == wall_name && between[1] == wall_name)
+        add(key, value, "the wall does not touch itself", "a population and \"wall\"");
+      else if (pair(between[0], between[1])->constants != &pairs[k].constants)
+        add(key, value, "given twice", "each two of them once");
+    }
+  }
+
+  /// The first table between the two, in either order.
+  std::optional<Given> pair(const std::string& a, const std::string& b) const {
+    const std::vector<PairContact>& pairs = scene_.contact.pairs;
+    for (std::size_t k = 0; k < pairs.size() && !a.empty() && !b.empty(); ++k) {
+      const auto& [first, second] = pairs[k].between;
+      if ((first == a && second == b) || (first == b && second == a))
+        return Given{&pairs[k].constants, fmt::format("contact.pair.{}", k)};
+    }
+    return std::nullopt;
+  }
+
+  double reference(const Given& given) {
+    const double radius = require(given.constants->reference_radius, given.table + ".reference_radius",
+                                  "the radius that the stiffness holds for");
+    check(given.table + ".reference_radius", radius, radius > 0.0, "above 0");
+    check(given.table + ".stiffness", *given.constants->stiffness, *given.constants->stiffness > 0.0, "above 0");
     return radius;
+  }
+
+  Elasticity wall_material(const Given& given) {
+    const std::string why = fmt::format("needed, as {}.stiffness is left out", given.table);
+    const Elasticity wall{require(given.constants->young, given.table + ".young", why),
+                          require(given.constants->poisson, given.table + ".poisson", why)};
+    check_elasticity(given.table, wall);
+    return wall;
   }
 
   Elasticity material(std::size_t a) {
@@ -114,10 +168,13 @@ private:
     const Elasticity elasticity{
         require(population.young, key + ".young", "needed where a contact gives no stiffness"),
         require(population.poisson, key + ".poisson", "needed where a contact gives no stiffness")};
-    check(key + ".young", elasticity.young, elasticity.young > 0.0, "above 0");
-    check(key + ".poisson", elasticity.poisson, elasticity.poisson > -1.0 && elasticity.poisson <= 0.5,
-          "above -1, at most 0.5");
+    check_elasticity(key, elasticity);
     return elasticity;
+  }
+
+  void check_elasticity(const std::string& table, const Elasticity& of) {
+    check(table + ".young", of.young, of.young > 0.0, "above 0");
+    check(table + ".poisson", of.poisson, of.poisson > -1.0 && of.poisson <= 0.5, "above -1, at most 0.5");
   }
 
   const Scene& scene_;
@@ -142,20 +199,24 @@ ContactTable make_contact_table(const Scene& scene) {
   for (const Population& population : scene.populations) granules += population.count;
   for (std::size_t a = 0; a < populations; ++a) {
     if (scene.populations[a].count == 0) continue; // nothing of it ever touches anything
+    const std::optional<Given> wall = constants.of_wall(a);
     // A single granule beside a wall that says everything needs no constants of granules among themselves.
-    if (granules > 1 || !scene.contact.wall) {
+    if (granules > 1 || !wall) {
       for (std::size_t b = 0; b < populations; ++b) {
         if (scene.populations[b].count == 0) continue;
+        const Given given = constants.of_granules(a, b);
         ContactLaw& law = table.granule[a * populations + b];
-        law.stiffness_coefficient = constants.stiffness_of_granules(a, b);
-        constants.losses(scene.contact.granule, "contact.granule", law);
+        law.stiffness_coefficient = constants.stiffness_of_granules(given, a, b);
+        constants.losses(given, law);
       }
     }
-    table.wall[a].stiffness_coefficient = constants.stiffness_of_wall(a);
-    if (scene.contact.wall)
-      constants.losses(*scene.contact.wall, "contact.wall", table.wall[a]);
-    else
-      constants.losses(scene.contact.granule, "contact.granule", table.wall[a]);
+    if (wall) {
+      table.wall[a].stiffness_coefficient = constants.stiffness_of_wall(*wall, a);
+      constants.losses(*wall, table.wall[a]);
+    } else {
+      // Left out: the flat wall of the granules' own material. E* is then that of two such granules, and so is C.
+      table.wall[a] = table.between(a, a);
+    }
   }
   constants.throw_if_any();
   return table;

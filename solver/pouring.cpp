@@ -32,19 +32,16 @@ Plan pouring_plan(const Plan& plan) {
   for (Population& population : scene.populations) population.speed = 0.0;
   // Friction that has no hold at zero slip only makes the way to rest long: the bed would creep for seconds.
   scene.contact.friction = FrictionLaw::none;
-  scene.contact.granule.friction.reset();
-  if (scene.contact.wall) scene.contact.wall->friction.reset();
-  if (scene.contact.damping != NormalDamping::tsuji) {
-    scene.contact.damping = NormalDamping::tsuji;
-    scene.contact.granule.normal_damping.reset();
-    if (scene.contact.wall) scene.contact.wall->normal_damping.reset();
-  }
-  const auto lossy = [](ContactConstants& constants) {
+  scene.contact.damping = NormalDamping::tsuji;
+  const auto made_lossy = [](ContactConstants& constants) {
+    constants.friction.reset();
+    constants.normal_damping.reset();
     constants.alpha.reset();
     constants.restitution = pouring_restitution;
   };
-  lossy(scene.contact.granule);
-  if (scene.contact.wall) lossy(*scene.contact.wall);
+  made_lossy(scene.contact.granule);
+  if (scene.contact.wall) made_lossy(*scene.contact.wall);
+  for (PairContact& pair : scene.contact.pairs) made_lossy(pair.constants);
   return make_plan(scene);
 }
 

@@ -61,12 +61,19 @@ struct ContactConstants {
   std::optional<double> poisson;          ///< of the wall
 };
 
+/// [[contact.pair]]: between two populations by name, or a population and "wall", instead of the above.
+struct PairContact {
+  std::array<std::string, 2> between;
+  ContactConstants constants;
+};
+
 struct Contact {
   NormalDamping damping = NormalDamping::tsuji;
   FrictionLaw friction = FrictionLaw::coulomb;
   bool rotation = true;
   ContactConstants granule;
   std::optional<ContactConstants> wall; ///< left out: as the granules', the wall of their material
+  std::vector<PairContact> pairs;
 };
 
 /// [structure]: one degree of freedom along `direction`, M x'' + c x' + K x = F + R; x from the equilibrium without granules.

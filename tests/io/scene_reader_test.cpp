@@ -384,3 +384,46 @@ TEST_CASE("files that cannot be read") {
   CHECK_THROWS_AS(read_scene("/no/such/scene.toml"), FileError);
   CHECK_THROWS_AS(read_scene(std::filesystem::temp_directory_path()), FileError);
 }
+
+TEST_CASE("contacts between two populations and with the wall") {
+  const std::string steel = R"([[granules]]
+name = "steel"
+count = 20
+radius = 2e-3
+density = 7800
+[packing])";
+  std::string text = replaced(good_scene, "[packing]", steel);
+  const std::string pairs = R"([[contact.pair]]
+between = ["acrylic", "steel"]
+stiffness = 2e7
+reference_radius = 3e-3
+restitution = 0.7
+friction = 0.3
+[[contact.pair]]
+between = ["wall", "steel"]
+young = 2e11
+poisson = 0.3
+alpha = 0.2
+friction = 0.1
+)";
+  text = replaced(text, "radius = 2e-3\n", "radius = 2e-3\nyoung = 2.1e11\npoisson = 0.29\n");
+  text = replaced(text, "[structure]", pairs + "[structure]");
+  const Scene scene = read_scene_text(text, "pairs.toml").scene;
+  REQUIRE(scene.contact.pairs.size() == 2);
+  CHECK(scene.contact.pairs[0].between == std::array<std::string, 2>{"acrylic", "steel"});
+  CHECK(scene.contact.pairs[0].constants.stiffness == 2e7);
+  CHECK(scene.contact.pairs[0].constants.restitution == 0.7);
+  CHECK(scene.contact.pairs[0].constants.friction == 0.3);
+  CHECK(scene.contact.pairs[1].between == std::array<std::string, 2>{"wall", "steel"});
+  CHECK(scene.contact.pairs[1].constants.young == 2e11);
+  CHECK(scene.contact.pairs[1].constants.alpha == 0.2);
+  // As run with an override, and read again: the same.
+  const SceneDocument changed = read_scene_text(text, "pairs.toml", {"contact.pair.0.friction=0.4"});
+  CHECK(changed.scene.contact.pairs[0].constants.friction == 0.4);
+  CHECK(test::same_scene(read_scene_text(changed.text, "again.toml").scene, changed.scene));
+
+  // Pairs that say everything need no [contact.granule].
+  std::string whole =
+      replaced(good_scene, "[contact.granule]", "[[contact.pair]]\nbetween = [\"acrylic\", \"acrylic\"]");
+  CHECK(read_scene_text(whole, "whole.toml").scene.contact.pairs.size() == 1);
+}

@@ -142,3 +142,46 @@ TEST_CASE("constants that are missing or out of range are named all at once") {
   scene.contact = Contact{};
   CHECK(missing(scene).empty()); // the bare structure needs none
 }
+
+TEST_CASE("pairs of populations and a population with the wall have constants of their own") {
+  Scene scene;
+  scene.populations = {population(1.0e-3, 3.0e9, 0.35), population(2.0e-3, 2.0e11, 0.3)};
+  scene.populations[0].name = "acrylic";
+  scene.populations[1].name = "steel";
+  scene.contact = losses();
+  const ContactTable plain = make_contact_table(scene);
+  ContactConstants own;
+  own.restitution = 0.6;
+  own.friction = 0.1;
+  scene.contact.pairs.push_back({{"steel", "acrylic"}, own});
+  own.stiffness = 2.0e7;
+  own.reference_radius = 4.0e-3;
+  own.friction = 0.2;
+  scene.contact.pairs.push_back({{"wall", "steel"}, own});
+  const ContactTable table = make_contact_table(scene);
+  CHECK(table.between(0, 0) == plain.between(0, 0));
+  CHECK(table.between(1, 1) == plain.between(1, 1));
+  CHECK(table.wall[0] == plain.wall[0]);
+  CHECK(table.between(0, 1) == table.between(1, 0));
+  CHECK(table.between(0, 1).stiffness_coefficient == plain.between(0, 1).stiffness_coefficient);
+  CHECK(table.between(0, 1).alpha == tsuji_alpha(0.6));
+  CHECK(table.between(0, 1).friction == 0.1);
+  CHECK(table.wall[1].stiffness_coefficient * std::sqrt(4.0e-3) == doctest::Approx(2.0e7).epsilon(1e-14));
+  CHECK(table.wall[1].friction == 0.2);
+
+  // A wall's material, for one of the two.
+  scene.contact.pairs[1].constants.stiffness.reset();
+  CHECK(missing(scene) == std::vector<std::string>{"contact.pair.1.poisson", "contact.pair.1.young"});
+  scene.contact.pairs[1].constants.young = 1.0e30;
+  scene.contact.pairs[1].constants.poisson = 0.0;
+  CHECK(make_contact_table(scene).wall[1].stiffness_coefficient ==
+        doctest::Approx(4.0 / 3.0 * 2.0e11 / (1.0 - 0.09)).epsilon(1e-12));
+
+  scene.contact.pairs.push_back({{"acrylic", "steel"}, own});
+  scene.contact.pairs.push_back({{"acrylic", "glass"}, own});
+  scene.contact.pairs.push_back({{"wall", "wall"}, own});
+  scene.contact.pairs.push_back({{"", "wall"}, own});
+  scene.populations.push_back(population(1.0e-3, 1.0e9, 0.3));
+  CHECK(missing(scene) == std::vector<std::string>{"contact.pair.2.between", "contact.pair.3.between",
+                                                   "contact.pair.4.between", "contact.pair.5.between"});
+}

@@ -45,6 +45,11 @@ inline bool same_scene(const Scene& a, const Scene& b) {
   if (a.populations.size() != b.populations.size()) return false;
   for (std::size_t i = 0; i < a.populations.size(); ++i)
     if (!same(a.populations[i], b.populations[i])) return false;
+  if (a.contact.pairs.size() != b.contact.pairs.size()) return false;
+  for (std::size_t i = 0; i < a.contact.pairs.size(); ++i)
+    if (a.contact.pairs[i].between != b.contact.pairs[i].between ||
+        !same(a.contact.pairs[i].constants, b.contact.pairs[i].constants))
+      return false;
   return std::tie(a.title, a.seed, a.gravity, a.packing, a.contact.damping, a.contact.friction, a.contact.rotation) ==
              std::tie(b.title, b.seed, b.gravity, b.packing, b.contact.damping, b.contact.friction,
                       b.contact.rotation) &&
