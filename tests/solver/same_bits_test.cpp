@@ -1,0 +1,113 @@
+// The same scene gives the same bits, however many threads share the work and whichever of the fused instruction sets
+// does it.
+#include "kernels/dispatch.hpp"
+#include "solver/simulation.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <numbers>
+#include <string>
+
+namespace grandamp::test {
+
+namespace {
+
+Population balls(std::size_t count, double radius) {
+  Population population;
+  population.name = "balls of " + std::to_string(radius);
+  population.count = count;
+  population.radius = radius;
+  population.mass = 1190.0 * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+  population.speed = 1.0;
+  return population;
+}
+
+/// A cloud flying about in a box that a structure carries: enough for several segments.
+Scene cloud(std::size_t count, double side) {
+  Scene scene;
+  scene.gravity = {0.0, 0.0, -9.81};
+  scene.enclosure.size = {side, side, side};
+  scene.packing = PackingKind::random;
+  scene.populations.push_back(balls(count, 1.0e-3));
+  scene.contact.granule.stiffness = 1.0e7;
+  scene.contact.granule.reference_radius = 3.0e-3;
+  scene.contact.granule.restitution = 0.8;
+  scene.contact.granule.friction = 0.5;
+  scene.structure = Structure{.mass = 0.3, .stiffness = 1000.0, .damping = 0.2, .velocity = 0.5};
+  scene.time.duration = 150 * 4.0e-6;
+  scene.time.step = 4.0e-6;
+  scene.verlet.skin = 0.05; // several rebuilds
+  return scene;
+}
+
+struct Outcome {
+  GranuleTable granules;
+  Sample sample;
+  std::int64_t builds = 0;
+  int threads = 0;
+};
+
+Outcome run(const Scene& scene, int threads, const std::string& isa) {
+  RunOptions options;
+  options.threads = threads;
+  options.isa = isa;
+  Simulation simulation(scene, options);
+  while (!simulation.finished()) simulation.step();
+  return {simulation.granules(), simulation.sample(), simulation.verlet().builds, simulation.threads()};
+}
+
+bool same_bits(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vector3)) == 0;
+}
+
+void check_same(const Outcome& a, const Outcome& b) {
+  CHECK(same_bits(a.granules.position, b.granules.position));
+  CHECK(same_bits(a.granules.velocity, b.granules.velocity));
+  CHECK(same_bits(a.granules.spin, b.granules.spin));
+  CHECK(a.sample.displacement == b.sample.displacement);
+  CHECK(a.sample.stored.kinetic == b.sample.stored.kinetic);
+  CHECK(a.sample.stored.elastic == b.sample.stored.elastic);
+  CHECK(a.sample.ledger.friction_granule == b.sample.ledger.friction_granule);
+  CHECK(a.sample.contacts == b.sample.contacts);
+  CHECK(a.builds == b.builds);
+}
+
+} // namespace
+
+TEST_CASE("the same bits on 1, 2, 4 and 8 threads") {
+  const Scene scene = cloud(24000, 0.066);
+  const Outcome alone = run(scene, 1, "");
+  CHECK(alone.builds > 3);
+  CHECK(alone.sample.contacts > 100);
+  for (const int threads : {2, 4, 8}) {
+    CAPTURE(threads);
+    const Outcome shared = run(scene, threads, "");
+    CHECK(shared.threads == threads);
+    check_same(alone, shared);
+  }
+}
+
+TEST_CASE("the same bits on 1 and 2 threads with two sizes and the verlet integrator") {
+  Scene scene = cloud(16000, 0.066);
+  scene.populations.push_back(balls(6000, 0.8e-3));
+  scene.time.integrator = Integrator::verlet;
+  check_same(run(scene, 1, ""), run(scene, 2, ""));
+}
+
+TEST_CASE("AVX2 and AVX-512 give the same bits") {
+  if (!kernels::available(kernels::InstructionSet::avx512)) {
+    MESSAGE("skipped: this machine does not run AVX-512");
+    return;
+  }
+  Scene scene = cloud(3000, 0.033);
+  check_same(run(scene, 1, "avx2"), run(scene, 1, "avx512"));
+  scene.populations.push_back(balls(500, 0.8e-3));
+  check_same(run(scene, 1, "avx2"), run(scene, 1, "avx512"));
+}
+
+TEST_CASE("a few granules stay on one thread unless told otherwise") {
+  CHECK(run(cloud(500, 0.033), 0, "").threads == 1);
+}
+
+} // namespace grandamp::test
