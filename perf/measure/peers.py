@@ -2,14 +2,12 @@
 
 import math
 import os
+import subprocess
 import tempfile
-import time
 
 from . import states
 from .common import (ENVIRONMENT, Report, found, have, in_turn, median, number, perf, quick, repeats, spread, step_timer)
 from .states import SCENES, START_SPEED
-
-import subprocess
 
 #: steps timed, steps before that, LAMMPS's skins to try (m), least ratio wanted to LAMMPS, and to LIGGGHTS
 PLAN = {
@@ -20,6 +18,9 @@ PLAN = {
     "S4": (60, 20, (0.08e-3, 0.12e-3, 0.16e-3, 0.24e-3), 9.0, None),
     "S5": (40000, 1000, (0.4e-3, 0.5e-3, 0.8e-3, 1.2e-3), 5.0, None),
 }
+
+#: All, or those of the environment's SCENES ("S1 S5").
+SCENE_NAMES = os.environ.get("SCENES", " ".join(PLAN)).split()
 
 
 def plan(name):
@@ -117,9 +118,9 @@ def measure(report_name, title, names, peers):
             measurements["LAMMPS"] = lambda skin=skin: lammps(name, skin, steps, warm)
         measurements["general"] = lambda: ours(name, "general", steps, warm)
         if "liggghts" in peers and name in ("S1", "S2", "S3", "S5"):
-            ligggths_skin, tried = best_skin(liggghts, name, steps, warm, skins)
-            skins_tried.append((name, "LIGGGHTS", *scan(tried, ligggths_skin)))
-            measurements["LIGGGHTS"] = lambda skin=ligggths_skin: liggghts(name, skin, steps, warm)
+            liggghts_skin, tried = best_skin(liggghts, name, steps, warm, skins)
+            skins_tried.append((name, "LIGGGHTS", *scan(tried, liggghts_skin)))
+            measurements["LIGGGHTS"] = lambda skin=liggghts_skin: liggghts(name, skin, steps, warm)
         measurements["chosen"] = lambda: ours(name, "chosen", steps, warm)
         measurements["ledger"] = lambda: ours(name, "ledger", steps, warm)
         taken = in_turn(measurements)
@@ -169,11 +170,11 @@ def main():
     for program in ("lmp", "liggghts"):
         if not have(program):
             raise SystemExit(f"{program} is not installed")
-    measure("peers", "Against LAMMPS and LIGGGHTS", ["S1", "S1_rest", "S2", "S3", "S5", "S4"], {"lammps", "liggghts"})
+    measure("peers", "Against LAMMPS and LIGGGHTS", SCENE_NAMES, {"lammps", "liggghts"})
 
 
 def scenes():
-    measure("scenes", "The five scenes", ["S1", "S1_rest", "S2", "S3", "S5", "S4"], set())
+    measure("scenes", "The five scenes", SCENE_NAMES, set())
 
 
 if __name__ == "__main__":

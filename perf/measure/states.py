@@ -49,9 +49,14 @@ def end_state(text, name, settings=None):
 
 def by_count(name, count, packing, more=""):
     text = (perf / "scenes" / f"{name}.toml").read_text(encoding="utf-8")
-    changed = text.replace(f'file    = "{name}.csv"', f"count   = {count}{more}")
-    assert changed != text, name
-    return changed + f'\n[packing]\nkind = "{packing}"\n'
+    given = f"count   = {count}\nradius  = {SCENES[name][0]}{more}"
+    return replaced(text, f'file    = "{name}.csv"', given) + f'\n[packing]\nkind = "{packing}"\n'
+
+
+def replaced(text, old, new):
+    if old not in text:
+        raise SystemExit(f"a scene of perf/scenes lacks {old!r}")
+    return text.replace(old, new)
 
 
 def make(name):
