@@ -223,6 +223,7 @@ GranuleTable Simulation::granules() {
     table.radius[id] = p.radius;
     table.population[id] = rows.population[row];
   }
+  table.contacts = state_->stepper.contacts();
   return table;
 }
 

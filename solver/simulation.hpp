@@ -50,6 +50,7 @@ struct GranuleTable {
   std::vector<Vector3> spin;     ///< rad/s
   std::vector<double> radius;    ///< m
   std::vector<std::int32_t> population;
+  std::vector<std::int32_t> contacts; ///< with others and with walls, each
 };
 
 struct VerletStatistics {

@@ -4,6 +4,7 @@
 
 #include "kernels/dispatch.hpp"
 #include "solver/audit.hpp"
+#include "solver/contact_count.hpp"
 #include "solver/enclosure_motion.hpp"
 #include "solver/granules.hpp"
 #include "solver/material.hpp"
@@ -52,6 +53,8 @@ public:
   double time() const noexcept { return static_cast<double>(step_number_) * time_step_; }
   const Granules& granules() const noexcept { return granules_; }
   const EnclosureMotion& motion() const noexcept { return motion_; }
+  /// How many others and walls each granule touches now, by id.
+  std::vector<std::int32_t> contacts() const { return contacts_by_id(granules_, list_, walls_); }
 
   VerletStatistics verlet() const;
   const GuardStatistics& guards() const noexcept { return guards_; }
