@@ -123,7 +123,7 @@ private:
     if (spins_) result_.spins.push_back({value[wx], value[wy], value[wz]});
     if (has(radius)) result_.radii.push_back(value[radius]);
     if (has(density)) result_.densities.push_back(value[density]);
-    if (has(id)) ids_.push_back({number, line_});
+    if (has(id)) ids_.emplace_back(number, line_);
   }
 
   template <class Number> static bool read(std::string_view field, Number& number) {

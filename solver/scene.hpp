@@ -76,11 +76,12 @@ struct Contact {
   std::vector<PairContact> pairs;
 };
 
-/// [structure]: one degree of freedom along `direction`, M x'' + c x' + K x = F + R; x from the equilibrium without granules.
+/// [structure]: one degree of freedom along `direction`, M x'' + c x' + K x = F + R; x from the equilibrium without
+/// granules.
 struct Structure {
-  double mass = 0.0;      ///< without granules, kg
-  double stiffness = 0.0; ///< N/m
-  double damping = 0.0;   ///< N s/m
+  double mass = 0.0;                ///< without granules, kg
+  double stiffness = 0.0;           ///< N/m
+  double damping = 0.0;             ///< N s/m
   Vector3 direction{0.0, 0.0, 1.0}; ///< unit vector (the reader normalises)
   double displacement = 0.0;        ///< at t = 0, m
   double velocity = 0.0;            ///< at t = 0, m/s

@@ -10,7 +10,6 @@ namespace grandamp {
 
 using kernels::ContactResult;
 using kernels::MotionRow;
-using kernels::Observation;
 using kernels::PositionRow;
 
 const Stepper::Kernels& Stepper::kernels_for(bool energies) const {

@@ -45,6 +45,7 @@ bool all_equal(const std::vector<ContactLaw>& laws) {
 
 std::vector<kernels::LawRow> law_rows(const std::vector<ContactLaw>& laws, NormalDamping damping) {
   std::vector<kernels::LawRow> rows;
+  rows.reserve(laws.size());
   for (const ContactLaw& law : laws)
     rows.push_back({law.stiffness_coefficient, damping == NormalDamping::linear ? law.normal_damping : law.alpha,
                     law.friction, 0.0});

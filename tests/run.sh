@@ -43,14 +43,13 @@ check() {
     failures+=("$name ($logs/$name.log)")
     echo "FAILED  $name ($((SECONDS - start)) s)"
     tail -n 40 "$logs/$name.log"
+    return 1
   fi
 }
 
 # need NAME COMMAND...: without it nothing further makes sense.
 need() {
-  local before=$failed
-  check "$@"
-  [ "$failed" -eq "$before" ] || finish
+  check "$@" || finish
 }
 
 # build PRESET [OPTION]...
@@ -128,7 +127,7 @@ if [ $full -eq 1 ]; then
   check thread_sanitizer env TSAN_OPTIONS="halt_on_error=1 suppressions=$logs/thread-sanitizer.suppressions" \
     build-thread-sanitize/tests/test_solver --test-case='the same bits*'
 fi
-check build_fuzz build fuzz
+need build_fuzz build fuzz
 for source in tests/fuzz/*_fuzz.cpp; do
   check "$(basename "$source" .cpp)" fuzz "$(basename "$source" .cpp)"
 done
