@@ -144,7 +144,7 @@ def measure(report_name, title, names, peers):
                      ratio("LIGGGHTS", liggghts_target),
                      number(1000.0 * time_of["general"] / general["granules"]),
                      number(general["contacts_per_granule"]), number(general["candidates_per_granule"]),
-                     number(general["mean_interval"]), number(general["skin_over_diameter"], 2),
+                     interval(general), number(general["skin_over_diameter"], 2),
                      ", ".join(f"{key} {value:.0f}" for key, value in spreads.items())])
     report = Report(report_name, title, f"""Microseconds of processor time per step, one thread ({general['isa']}), medians of {repeats} runs taken in turn
 (A B C A B C ...) from the same start state. LAMMPS: its own loop time and processor share; LIGGGHTS: the process's
@@ -160,6 +160,10 @@ energy ledger. The targets were set for a machine with AVX-512.""")
     for note in notes:
         report.text(note)
     report.write()
+
+
+def interval(timing):
+    return number(timing["mean_interval"]) if timing["builds"] else f"over {timing['steps']:,}"
 
 
 def scan(tried, skin):

@@ -2,7 +2,7 @@
 
 import math
 
-from . import states
+from . import peers, states
 from .common import Report, in_turn, median, number, perf, quick, repeats, step_timer
 from .states import SCENES
 
@@ -11,17 +11,21 @@ SMALL = (100, 300, 1000, 3000, 10000, 30000)
 TILES = {100000: (1, 1), 300000: (3, 1), 1000000: (5, 2), 3000000: (6, 5), 10000000: (10, 10)}
 
 
-def small_bed(count):
-    """S3's bed in a smaller box of the same shape: poured, then a period of shaking."""
+def bed_text(count):
+    """S3 in a box of the same shape, as much smaller or larger as the number of granules."""
     scale = (count / 100000.0) ** (1.0 / 3.0)
     box = [length * scale for length in SCENES["S3"][1]]
-    text = (perf / "scenes" / "S3.toml").read_text(encoding="utf-8")
-    text = states.replaced(text, "[0.1, 0.1, 0.12]", str(box))
+    return states.replaced((perf / "scenes" / "S3.toml").read_text(encoding="utf-8"), "[0.1, 0.1, 0.12]", str(box)), box
+
+
+def small_bed(count):
+    """Made as S3 is: a lattice, then a period of shaking."""
+    text, box = bed_text(count)
     name = f"bed_{count}"
     if not (states.states / f"{name}.csv").exists():
-        start = states.replaced(text, 'file    = "S3.csv"', f"count   = {count}\nradius  = {SCENES['S3'][0]}")
-        start += '\n[packing]\nkind = "settled"\n'
-        states.end_state(start, name, {"time.duration": 1.0 / states.FREQUENCY})
+        states.states.mkdir(parents=True, exist_ok=True)
+        states.write_csv(f"{name}_lattice", states.lattice(count, SCENES["S3"][0], box))
+        states.end_state(text.replace("S3.csv", f"{name}_lattice.csv"), name, {"time.duration": 1.0 / states.FREQUENCY})
     file = states.states / f"{name}.toml"
     file.write_text(text.replace("S3.csv", f"{name}.csv"), encoding="utf-8")
     return file
@@ -29,9 +33,7 @@ def small_bed(count):
 
 def memory_scene(count):
     """Granules by count: no lists of positions in the scene beside the rows."""
-    scale = (count / 100000.0) ** (1.0 / 3.0)
-    text = (perf / "scenes" / "S3.toml").read_text(encoding="utf-8")
-    text = states.replaced(text, "[0.1, 0.1, 0.12]", str([length * scale for length in SCENES["S3"][1]]))
+    text, _ = bed_text(count)
     text = states.replaced(text, 'file    = "S3.csv"', f"count   = {count}\nradius  = {SCENES['S3'][0]}")
     text += '\n[packing]\nkind = "random"\n'
     states.states.mkdir(parents=True, exist_ok=True)
@@ -57,7 +59,7 @@ def main():
         time = median([t["processor_ns_per_step"][0] for t in taken])
         memory = step_timer(memory_scene(count), steps=3, warm=20) if count >= 10000 else None
         rows.append([f"{of['granules']:,}", number(time / 1000.0), number(time / count), number(of["contacts_per_granule"]),
-                     number(of["candidates_per_granule"]), number(of["mean_interval"]),
+                     number(of["candidates_per_granule"]), peers.interval(of),
                      number(memory["bytes_per_granule"]) if memory else "-", number(of["bytes_per_granule"]) if count >= 10000 else "-"])
         curve.append((count, time / count))
     report = Report("sizes", "From 100 to 10,000,000 granules", f"""Processor time per step of the agitated bed of S3, one thread, medians of {repeats} runs; below 100,000 granules a
