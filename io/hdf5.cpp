@@ -1,6 +1,6 @@
 #include "io/hdf5.hpp"
 
-#include "io/text_file.hpp"
+#include "io/hdf5_seal.hpp"
 #include "solver/errors.hpp"
 
 #include <algorithm>
@@ -8,7 +8,8 @@
 namespace grandamp::hdf5 {
 namespace {
 
-constexpr std::size_t memory_increment = 1 << 22; // bytes
+constexpr std::size_t chunk_bytes = 1 << 16;      // about; what a reader of one row must take at least
+constexpr std::size_t most_chunk_items = 1 << 18; // of a row's first dimension
 
 /// What HDF5's error stack says at its most specific level; the system's own words if they are in it.
 std::string last_reason() {
@@ -39,6 +40,30 @@ Handle text_type(std::size_t length) {
   return type;
 }
 
+hid_t memory_type(Number type) {
+  switch (type) {
+  case Number::real64:
+    return H5T_NATIVE_DOUBLE;
+  case Number::integer64:
+    return H5T_NATIVE_INT64;
+  case Number::integer32:
+    return H5T_NATIVE_INT32;
+  }
+  return H5T_NATIVE_DOUBLE;
+}
+
+hid_t file_type(Number type) {
+  switch (type) {
+  case Number::real64:
+    return H5T_IEEE_F64LE;
+  case Number::integer64:
+    return H5T_STD_I64LE;
+  case Number::integer32:
+    return H5T_STD_I32LE;
+  }
+  return H5T_IEEE_F64LE;
+}
+
 } // namespace
 
 Silence::Silence() {
@@ -52,21 +77,25 @@ Silence::~Silence() {
 
 File File::create(const std::filesystem::path& path) {
   const Silence silence;
+  File created(path);
+  created.output_.emplace(path);
   // Members listed in the order of their creation: a history's columns keep theirs.
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fapl_core(access.id(), memory_increment, false);
-  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
-  if (!file) throw FileError(message(path, "create the file"));
-  return File(path, std::move(file), true);
+  H5Pset_userblock(creation.id(), seal_bytes);
+  const Handle access(created.output_->access(), H5Pclose);
+  created.file_ =
+      Handle(H5Fcreate(created.output_->beside().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
+  if (!created.file_) throw FileError(message(path, "create the file"));
+  return created;
 }
 
 File File::open(const std::filesystem::path& path) {
   const Silence silence;
-  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file) throw FileError(message(path, "open the file"));
-  return File(path, std::move(file), false);
+  File opened(path);
+  opened.file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!opened.file_) throw FileError(message(path, "open the file"));
+  return opened;
 }
 
 void File::fail(const std::string& what) const {
@@ -82,19 +111,10 @@ void File::require(herr_t status, const std::string& what) const {
   if (status < 0) fail(what);
 }
 
-void File::flush() {
-  const Silence silence;
-  require(H5Fflush(file_.id(), H5F_SCOPE_GLOBAL), "write the file");
-  const ssize_t size = H5Fget_file_image(file_.id(), nullptr, 0);
-  void* image = nullptr; // HDF5's own buffer: no copy of a file that may be large
-  if (size < 0 || H5Fget_vfd_handle(file_.id(), H5P_DEFAULT, &image) < 0) fail("write the file");
-  replace_file(path_, {*static_cast<const char**>(image), static_cast<std::size_t>(size)});
-}
-
 void File::close() {
-  if (written_) flush();
   const Silence silence;
   if (!file_.close()) fail("close the file");
+  if (output_) output_->finish();
 }
 
 bool File::has(const std::string& name) const {
@@ -129,30 +149,43 @@ void File::create_group(const std::string& name) {
       owned(H5Gcreate2(file_.id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose, "create " + name);
 }
 
-Handle File::create_column(const std::string& name, std::size_t chunk) {
+Handle File::create_rows(const std::string& name, Number type, const std::vector<std::size_t>& row, std::size_t rows) {
   const Silence silence;
-  const hsize_t start = 0;
-  const hsize_t unlimited = H5S_UNLIMITED;
-  const hsize_t block = chunk;
-  const Handle space = owned(H5Screate_simple(1, &start, &unlimited), H5Sclose, "create " + name);
+  std::size_t row_bytes = H5Tget_size(file_type(type));
+  for (const std::size_t items : row) row_bytes *= items;
+  // Small datasets take little room, large ones few chunks; a row is in one chunk unless it is huge.
+  const std::size_t most = std::max<std::size_t>(chunk_bytes / std::max<std::size_t>(row_bytes, 1), 1);
+  std::vector<hsize_t> size{0}, limit{H5S_UNLIMITED}, chunk{std::clamp<std::size_t>(rows, 1, most)};
+  for (const std::size_t items : row) {
+    size.push_back(items);
+    limit.push_back(items);
+    chunk.push_back(std::clamp<std::size_t>(items, 1, most_chunk_items));
+  }
+  const int rank = static_cast<int>(size.size());
+  const Handle space = owned(H5Screate_simple(rank, size.data(), limit.data()), H5Sclose, "create " + name);
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  require(H5Pset_chunk(creation.id(), 1, &block), "create " + name);
+  require(H5Pset_chunk(creation.id(), rank, chunk.data()), "create " + name);
   return owned(
-      H5Dcreate2(file_.id(), name.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+      H5Dcreate2(file_.id(), name.c_str(), file_type(type), space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
       H5Dclose, "create " + name);
 }
 
-void File::append(const Handle& column, std::size_t rows_before, const std::vector<double>& values) {
+void File::append(const Handle& dataset, std::size_t rows_before, std::size_t rows, Number type, const void* values) {
   const Silence silence;
-  const hsize_t start = rows_before;
-  const hsize_t count = values.size();
-  const hsize_t total = start + count;
-  require(H5Dset_extent(column.id(), &total), "append to the file");
-  const Handle target = owned(H5Dget_space(column.id()), H5Sclose, "append to the file");
-  require(H5Sselect_hyperslab(target.id(), H5S_SELECT_SET, &start, nullptr, &count, nullptr), "append to the file");
-  const Handle source = owned(H5Screate_simple(1, &count, nullptr), H5Sclose, "append to the file");
-  require(H5Dwrite(column.id(), H5T_NATIVE_DOUBLE, source.id(), target.id(), H5P_DEFAULT, values.data()),
-          "append to the file");
+  const std::string what = "append to the file";
+  Handle target = owned(H5Dget_space(dataset.id()), H5Sclose, what);
+  std::vector<hsize_t> count(static_cast<std::size_t>(H5Sget_simple_extent_ndims(target.id())));
+  H5Sget_simple_extent_dims(target.id(), count.data(), nullptr);
+  std::vector<hsize_t> start(count.size(), 0);
+  start[0] = rows_before;
+  count[0] = rows_before + rows;
+  require(H5Dset_extent(dataset.id(), count.data()), what);
+  if (std::find(count.begin(), count.end(), hsize_t{0}) != count.end()) return;
+  count[0] = rows;
+  target = owned(H5Dget_space(dataset.id()), H5Sclose, what);
+  require(H5Sselect_hyperslab(target.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), what);
+  const Handle source = owned(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose, what);
+  require(H5Dwrite(dataset.id(), memory_type(type), source.id(), target.id(), H5P_DEFAULT, values), what);
 }
 
 void File::write_values(const std::string& name, hid_t type, const void* data, const std::vector<hsize_t>& shape) {
@@ -175,6 +208,16 @@ void File::write(const std::string& name, const std::vector<double>& values, std
 
 void File::write(const std::string& name, const std::vector<std::int64_t>& values) {
   write_values(name, H5T_NATIVE_INT64, values.data(), {values.size()});
+}
+
+void File::write(const std::string& name, const std::vector<std::int32_t>& values) {
+  write_values(name, H5T_NATIVE_INT32, values.data(), {values.size()});
+}
+
+void File::link(const std::string& object, const std::string& name) {
+  const Silence silence;
+  require(H5Lcreate_hard(file_.id(), object.c_str(), file_.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+          "write " + name);
 }
 
 void File::write(const std::string& name, const std::string& text) {
@@ -204,6 +247,29 @@ std::vector<std::int64_t> File::read_integers(const std::string& name) const {
   std::vector<std::int64_t> values(count_of(dataset, name));
   if (values.empty()) return values;
   require(H5Dread(dataset.id(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read " + name);
+  return values;
+}
+
+std::vector<double> File::read_row(const std::string& name, std::size_t row) const {
+  const Silence silence;
+  const Handle dataset = owned(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "read " + name);
+  const Handle space = owned(H5Dget_space(dataset.id()), H5Sclose, "read " + name);
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  std::vector<hsize_t> count(static_cast<std::size_t>(std::max(rank, 0)));
+  if (rank < 1 || H5Sget_simple_extent_dims(space.id(), count.data(), nullptr) < 0 || row >= count[0])
+    throw FileError(path_.string() + ": " + name + " has no row " + std::to_string(row));
+  std::vector<hsize_t> start(count.size(), 0);
+  start[0] = row;
+  count[0] = 1;
+  std::size_t items = 1;
+  for (const hsize_t each : count) items *= each;
+  std::vector<double> values(items);
+  if (values.empty()) return values;
+  require(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
+          "read " + name);
+  const Handle memory = owned(H5Screate_simple(rank, count.data(), nullptr), H5Sclose, "read " + name);
+  require(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data()),
+          "read " + name);
   return values;
 }
 

@@ -1,10 +1,13 @@
 // HDF5's C interface behind handles that close themselves and calls that throw FileError with the file and the reason.
 #pragma once
 
+#include "io/hdf5_output.hpp"
+
 #include <hdf5.h>
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,11 +55,12 @@ private:
   void* data_ = nullptr;
 };
 
+enum class Number { real64, integer64, integer32 };
+
 /// An open file. Every member throws FileError ("PATH: cannot WHAT: REASON").
 ///
-/// A file that is created stays in memory until flush or close puts it in its place, whole, by ordinary system calls:
-/// HDF5 1.10 does not survive a write that fails (it ends the program when it closes the file), and a program that is
-/// killed while HDF5 writes leaves a file that nothing can open.
+/// A file that is created takes its place, whole and sealed, when it is closed; until then, and if it is never closed,
+/// what was there before stays. Memory stays flat: what is written goes to the disk (hdf5_output.hpp).
 class File {
 public:
   /// Replaces a file that exists.
@@ -64,8 +68,6 @@ public:
   static File open(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const noexcept { return path_; }
-  void flush();
-  /// Flushes what was written.
   void close();
 
   bool has(const std::string& name) const;
@@ -73,18 +75,24 @@ public:
   std::vector<std::string> members(const std::string& group) const;
   void create_group(const std::string& name);
 
-  /// A one-dimensional dataset of doubles that can grow.
-  Handle create_column(const std::string& name, std::size_t chunk);
-  void append(const Handle& column, std::size_t rows_before, const std::vector<double>& values);
+  /// A dataset that can grow by rows, each a number or an array of the shape `row`; `rows` are to be expected.
+  Handle create_rows(const std::string& name, Number type, const std::vector<std::size_t>& row, std::size_t rows);
+  /// `values` are doubles, std::int64_t or std::int32_t, as `type` says.
+  void append(const Handle& dataset, std::size_t rows_before, std::size_t rows, Number type, const void* values);
 
   /// Datasets of fixed size; `width` values per row make it two-dimensional.
   void write(const std::string& name, const std::vector<double>& values, std::size_t width = 1);
   void write(const std::string& name, const std::vector<std::int64_t>& values);
+  void write(const std::string& name, const std::vector<std::int32_t>& values);
   void write(const std::string& name, const std::string& text);
 
   /// Any numeric dataset, row by row.
   std::vector<double> read_doubles(const std::string& name) const;
   std::vector<std::int64_t> read_integers(const std::string& name) const;
+  /// One row of a dataset that has rows: numbers, or arrays one behind another.
+  std::vector<double> read_row(const std::string& name, std::size_t row) const;
+  /// A second name for the same object.
+  void link(const std::string& object, const std::string& name);
   std::string read_text(const std::string& name) const;
 
   void set_attribute(const std::string& object, const std::string& name, const std::string& value);
@@ -94,8 +102,7 @@ public:
   std::string text_attribute(const std::string& object, const std::string& name) const;
 
 private:
-  File(std::filesystem::path path, Handle file, bool written)
-      : path_(std::move(path)), file_(std::move(file)), written_(written) {}
+  explicit File(std::filesystem::path path) : path_(std::move(path)) {}
   [[noreturn]] void fail(const std::string& what) const;
   Handle owned(hid_t id, Handle::Close how, const std::string& what) const;
   void require(herr_t status, const std::string& what) const;
@@ -104,8 +111,8 @@ private:
   void put_attribute(const std::string& object, const std::string& name, hid_t type, const void* value);
 
   std::filesystem::path path_;
+  std::optional<Output> output_; ///< of a file that is created; stands before the file, which is closed first
   Handle file_;
-  bool written_ = false; ///< created here, so that it lives in memory
 };
 
 } // namespace grandamp::hdf5

@@ -4,8 +4,12 @@
 #include "solver/simulation.hpp"
 
 #include <array>
+#include <string_view>
 
 namespace grandamp {
+
+/// Rows as records of a log of this kind: doubles in the order below.
+inline constexpr std::string_view history_kind = "history";
 
 struct HistoryColumn {
   const char* name;

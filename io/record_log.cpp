@@ -71,13 +71,19 @@ RecordLog RecordLog::create(const std::filesystem::path& path, std::string_view 
   return log;
 }
 
-RecordLog RecordLog::open(const std::filesystem::path& path, std::string_view kind, std::size_t record_bytes) {
-  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+RecordLog RecordLog::open(const std::filesystem::path& path, std::string_view kind, std::size_t record_bytes,
+                          bool look) {
+  const int file = ::open(path.c_str(), (look ? O_RDONLY : O_RDWR) | O_CLOEXEC);
   RecordLog log(path, file, record_bytes);
   if (file < 0) log.fail("open");
   Header header{};
   if (read_all(file, header.data(), header.size(), 0) < 0) log.fail("read");
-  if (header != header_of(kind, record_bytes))
+  if (record_bytes == 0) {
+    std::uint64_t size = 0;
+    std::memcpy(&size, header.data() + size_at, sizeof size);
+    log.record_bytes_ = static_cast<std::size_t>(size);
+  }
+  if (header != header_of(kind, log.record_bytes_) || log.record_bytes_ == 0)
     throw FileError(path.string() + ": is no log of this run's " + std::string(kind) + ", or its start is damaged");
   log.count_ = log.written_ = log.whole_records();
   return log;

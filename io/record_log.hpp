@@ -17,8 +17,10 @@ class RecordLog {
 public:
   /// A new, empty one; replaces a file that exists. `kind` is told in the header, at most 24 characters.
   static RecordLog create(const std::filesystem::path& path, std::string_view kind, std::size_t record_bytes);
-  /// One that exists, for reading and going on. It must be of this kind and size of record.
-  static RecordLog open(const std::filesystem::path& path, std::string_view kind, std::size_t record_bytes);
+  /// One that exists, of this kind and size of record (0: of any size). To go on with it, or to `look` at it: for
+  /// reading alone, while another may be writing to it.
+  static RecordLog open(const std::filesystem::path& path, std::string_view kind, std::size_t record_bytes,
+                        bool look = false);
 
   RecordLog(RecordLog&& other) noexcept;
   RecordLog& operator=(RecordLog&& other) noexcept;

@@ -2,11 +2,13 @@
 // io/FORMAT.md.
 #pragma once
 
+#include "io/snapshots.hpp"
 #include "solver/simulation.hpp"
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,10 +20,11 @@ struct ResultsPosition {
   std::int64_t snapshots = 0; ///< taken
 };
 
-/// Records a run. What is appended goes to logs beside results.h5 (history.part); now and then, and at the end, they
-/// are folded: a new results.h5 is written whole beside the old one, synced and put in its place. So results.h5 can be
-/// read at any time, and a kill costs nothing that was synced. Memory stays flat; on the disk a running run takes twice
-/// its results. All members throw FileError with the path and the reason; results.h5 is then as after the last fold.
+/// Records a run. What is appended goes to logs beside results.h5 (history.part, snapshots.part); now and then, and at
+/// the end, they are folded: a new results.h5 is written whole beside the old one, synced and put in its place (and
+/// snapshots.xdmf, which tells ParaView where in it the snapshots are). So results.h5 can be read at any time, and a
+/// kill costs nothing that was synced. Memory stays flat; on the disk a running run takes twice its results. All
+/// members throw FileError with the path and the reason; results.h5 is then as after the last fold.
 class ResultsWriter {
 public:
   /// `results`: the path of results.h5, which is replaced if it is there, as are the logs of an earlier run beside it.
@@ -38,6 +41,8 @@ public:
 
   /// A row of the histories.
   void append(const Sample& sample);
+  /// The granules by id, at `time`, s; always as many.
+  void append_snapshot(const GranuleTable& granules, double time);
   /// What was recorded so far.
   ResultsPosition position() const;
   /// What was recorded so far is on the disk and outlives a power cut: to be called before a checkpoint that remembers
@@ -66,15 +71,13 @@ struct History {
   std::vector<std::vector<double>> columns; ///< all of one length
 };
 
-/// The granules of a run at one time.
-struct FinalGranules {
-  double time = 0.0; ///< s
-  GranuleTable table;
-};
-
-/// Reads results.h5. Throws FileError.
+/// Reads results.h5, and of a run that goes on or was killed also what the logs beside it hold beyond it.
+/// Throws FileError.
 History read_history(const std::filesystem::path& path);
-FinalGranules read_final_granules(const std::filesystem::path& path);
+Snapshot read_final_granules(const std::filesystem::path& path);
+/// The snapshot nearest to `time`, s; the granules at the end count as one, where the run came to its end. Nothing if
+/// the run took no snapshots.
+std::optional<Snapshot> read_snapshot_near(const std::filesystem::path& path, double time);
 std::string read_stored_scene(const std::filesystem::path& path);
 
 /// Comma-separated with a header row, 17 significant digits. Throws FileError.

@@ -11,8 +11,9 @@ namespace grandamp {
 
 struct RecordedRun {
   const std::string* scene_text = nullptr;
-  const RecordLog* rows = nullptr; ///< of the histories: doubles, in the order of history_columns; flushed
-  const FinalGranules* final_granules = nullptr; ///< null: the run is not at its end
+  const RecordLog* rows = nullptr;          ///< of the histories: doubles, in the order of history_columns; flushed
+  const RecordLog* snapshots = nullptr;     ///< null: none; flushed
+  const Snapshot* final_granules = nullptr; ///< null: the run is not at its end
 };
 
 /// Replaces the file as a whole: whatever goes wrong, what was there before stays. Throws FileError.

@@ -1,58 +1,80 @@
 #include "io/hdf5.hpp"
+#include "io/history_columns.hpp"
 #include "io/results.hpp"
 #include "solver/errors.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace grandamp {
 namespace {
 
-std::vector<Vector3> rows_of_three(const std::vector<double>& values) {
-  std::vector<Vector3> rows(values.size() / 3);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-  return rows;
+namespace fs = std::filesystem;
+
+/// A log beside the results file, if there is one.
+std::optional<RecordLog> log_beside(const fs::path& results, const char* name, std::string_view kind) {
+  const fs::path path = results.parent_path() / name;
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return std::nullopt;
+  return RecordLog::open(path, kind, 0, true);
+}
+
+void append_rows(History& history, const RecordLog& log) {
+  const std::size_t width = history.columns.size();
+  if (log.record_bytes() != width * sizeof(double))
+    throw FileError(log.path().string() + ": does not belong to the results beside it: its rows have another width");
+  const auto known = static_cast<std::int64_t>(history.columns.front().size());
+  if (log.count() <= known) return;
+  std::vector<double> block(static_cast<std::size_t>(log.count() - known) * width);
+  log.read(known, log.count() - known, block.data());
+  for (std::size_t c = 0; c < width; ++c)
+    for (std::size_t at = c; at < block.size(); at += width) history.columns[c].push_back(block[at]);
 }
 
 } // namespace
 
-History read_history(const std::filesystem::path& path) {
+History read_history(const fs::path& path) {
   const hdf5::File file = hdf5::File::open(path);
   if (!file.has("/history")) throw FileError(path.string() + ": holds no histories; not a results file of grandamp");
   History history;
-  history.names = file.members("/history");
-  std::size_t rows = 0;
-  for (const std::string& name : history.names) {
-    history.columns.push_back(file.read_doubles("/history/" + name));
-    rows = history.columns.size() == 1 ? history.columns.back().size() : std::min(rows, history.columns.back().size());
+  for (const HistoryColumn& column : history_columns) {
+    const std::string name = std::string("/history/") + column.name;
+    if (!file.has(name)) continue;
+    history.names.emplace_back(column.name);
+    history.columns.push_back(file.read_doubles(name));
+    if (history.columns.back().size() != history.columns.front().size())
+      throw FileError(path.string() + ": /history is damaged: its members differ in length");
   }
-  // A run cut while a block was written may leave the first columns longer.
-  for (auto& column : history.columns) column.resize(rows);
+  if (const auto log = log_beside(path, "history.part", history_kind); log && !history.columns.empty())
+    append_rows(history, *log);
   return history;
 }
 
-FinalGranules read_final_granules(const std::filesystem::path& path) {
+Snapshot read_final_granules(const fs::path& path) {
   const hdf5::File file = hdf5::File::open(path);
-  if (!file.has("/final")) {
+  if (!file.has("/final"))
     throw FileError(path.string() + ": holds no granules at the end; the run was stopped before it came there");
-  }
-  FinalGranules granules;
-  granules.time = file.double_attribute("/final", "time");
-  granules.table.position = rows_of_three(file.read_doubles("/final/position"));
-  granules.table.velocity = rows_of_three(file.read_doubles("/final/velocity"));
-  granules.table.spin = rows_of_three(file.read_doubles("/final/spin"));
-  granules.table.radius = file.read_doubles("/final/radius");
-  for (const std::int64_t population : file.read_integers("/final/population")) {
-    granules.table.population.push_back(static_cast<std::int32_t>(population));
-  }
-  const std::size_t count = granules.table.position.size();
-  if (granules.table.velocity.size() != count || granules.table.spin.size() != count ||
-      granules.table.radius.size() != count || granules.table.population.size() != count) {
-    throw FileError(path.string() + ": /final is damaged: its members differ in length");
-  }
-  return granules;
+  return read_final_granules(file);
 }
 
-std::string read_stored_scene(const std::filesystem::path& path) {
+std::optional<Snapshot> read_snapshot_near(const fs::path& path, double time) {
+  const hdf5::File file = hdf5::File::open(path);
+  const auto log = log_beside(path, "snapshots.part", snapshots_kind);
+  std::vector<double> times = read_snapshot_times(file);
+  const std::size_t folded = times.size();
+  for (auto k = static_cast<std::int64_t>(folded); log && k < log->count(); ++k)
+    times.push_back(read_snapshot(*log, k).time);
+  if (times.empty()) return std::nullopt;
+  const auto nearest = std::min_element(times.begin(), times.end(),
+                                        [time](double a, double b) { return std::abs(a - time) < std::abs(b - time); });
+  if (file.has("/final") && std::abs(file.double_attribute("/final", "time") - time) < std::abs(*nearest - time))
+    return read_final_granules(file);
+  const auto index = static_cast<std::size_t>(nearest - times.begin());
+  return index < folded ? read_snapshot(file, index) : read_snapshot(*log, static_cast<std::int64_t>(index));
+}
+
+std::string read_stored_scene(const fs::path& path) {
   return hdf5::File::open(path).read_text("/scene");
 }
 

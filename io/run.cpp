@@ -1,5 +1,6 @@
 #include "io/run.hpp"
 
+#include "io/output_schedule.hpp"
 #include "io/results.hpp"
 #include "io/run_folder.hpp"
 #include "io/summary.hpp"
@@ -22,23 +23,6 @@ double seconds_since(Clock::time_point start) {
 
 /// Thrown out of the pouring, which has no other way to be stopped.
 struct Interrupted {};
-
-/// The steps nearest to multiples of the history interval, each once, in order.
-class HistorySchedule {
-public:
-  HistorySchedule(double interval, double time_step) : steps_per_row_(interval / time_step) {}
-
-  bool due(std::int64_t step) const { return step == next_; }
-  void advance() {
-    const std::int64_t last = next_;
-    while (next_ == last) next_ = std::llround(static_cast<double>(++row_) * steps_per_row_);
-  }
-
-private:
-  double steps_per_row_;
-  std::int64_t row_ = 0;
-  std::int64_t next_ = 0;
-};
 
 /// Half the peak-to-peak of the displacement in the last whole period, from history rows: for the progress line only.
 class RecentAmplitude {
@@ -102,6 +86,8 @@ public:
   Recorder(Simulation& simulation, ResultsWriter& results, const RunSceneOptions& options)
       : simulation_(simulation), results_(results), options_(options), plan_(simulation.plan()),
         schedule_(plan_.scene.output.history_interval, plan_.time_step), amplitude_(plan_.scene), start_(Clock::now()) {
+    if (plan_.scene.output.snapshot_interval > 0.0)
+      snapshots_ = OutputSchedule(plan_.scene.output.snapshot_interval, plan_.time_step);
     // Looking at the clock costs more than a step of a few granules: about once a millisecond is enough.
     const auto granules = static_cast<std::int64_t>(plan_.granules);
     steps_between_looks_ = std::clamp<std::int64_t>(200'000 / std::max<std::int64_t>(granules, 1), 1, 1000);
@@ -116,6 +102,7 @@ public:
       step_to_the_end();
       record.end = simulation_.sample();
       if (schedule_.due(simulation_.step_number())) keep(record.end);
+      take_snapshot_if_due();
       results_.write_final(simulation_.granules(), simulation_.time());
     } catch (const GuardError& error) {
       // The state is no longer to be trusted, so what was recorded before is all there is.
@@ -144,6 +131,7 @@ private:
         record.message = "interrupted; there is no checkpoint to go on from in this version";
         return;
       }
+      take_snapshot_if_due();
       if (schedule_.due(simulation_.step_number())) {
         keep(simulation_.step_and_sample());
       } else {
@@ -161,6 +149,12 @@ private:
     results_.append(sample);
     amplitude_.add(sample);
     schedule_.advance();
+  }
+
+  void take_snapshot_if_due() {
+    if (!snapshots_.due(simulation_.step_number())) return;
+    results_.append_snapshot(simulation_.granules(), simulation_.time());
+    snapshots_.advance();
   }
 
   void look_at_the_clock() {
@@ -195,7 +189,7 @@ private:
   ResultsWriter& results_;
   const RunSceneOptions& options_;
   const Plan& plan_;
-  HistorySchedule schedule_;
+  OutputSchedule schedule_, snapshots_;
   RecentAmplitude amplitude_;
   Clock::time_point start_;
   std::int64_t steps_between_looks_ = 1;

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double most_steps = 1e15; // beyond, a step's number times the step is not exact
 constexpr double most_rows = 1e9;   // of a history: more is a mistake in the interval
+constexpr double most_snapshots = 1e6;
 
 void read_step(TableReader& table, TimeControl& time) {
   const std::string_view key = table.one_of({"step", "steps_per_contact", "error"});
@@ -31,6 +32,12 @@ void check_rows(TableReader& table, double interval, double duration) {
   if (duration > 0.0 && duration / interval > most_rows)
     table.wrong("history_interval", fmt::format("that is {:.3g} rows", duration / interval),
                 fmt::format("at least {:.3g} s", duration / most_rows));
+}
+
+void check_snapshots(TableReader& table, double interval, double duration) {
+  if (interval > 0.0 && duration > 0.0 && duration / interval > most_snapshots)
+    table.wrong("snapshot_interval", fmt::format("that is {:.3g} snapshots", duration / interval),
+                fmt::format("0 (none), or at least {:.3g} s", duration / most_snapshots));
 }
 
 void read_window(TableReader& table, Scene& scene) {
@@ -110,7 +117,7 @@ void read_output(TableReader& root, Scene& scene) {
   output.history_interval = table.number("history_interval", positive).value_or(output.history_interval);
   check_rows(table, output.history_interval, scene.time.duration);
   output.snapshot_interval = table.number("snapshot_interval", not_negative).value_or(output.snapshot_interval);
-  if (output.snapshot_interval != 0.0) table.not_yet("snapshot_interval", "a snapshot on the way", "0 (no snapshots)");
+  check_snapshots(table, output.snapshot_interval, scene.time.duration);
   output.checkpoint_interval = table.number("checkpoint_interval", not_negative).value_or(output.checkpoint_interval);
   if (output.checkpoint_interval != 0.0 && output.checkpoint_interval != OutputControl{}.checkpoint_interval)
     table.not_yet("checkpoint_interval", "a checkpoint", "0, or the default 60");

@@ -3,10 +3,28 @@
 #include "io/run.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 
 namespace grandamp {
+namespace {
+
+Snapshot granules_at(const std::filesystem::path& results, double time) {
+  if (auto snapshot = read_snapshot_near(results, time)) {
+    spdlog::info("granules at {:.17g} s, the nearest there are", snapshot->time);
+    return std::move(*snapshot);
+  }
+  Snapshot end = read_final_granules(results);
+  if (!(std::abs(time - end.time) <= 1e-6 * end.time)) {
+    throw UsageError(fmt::format("--time {}: this run took no snapshots (output.snapshot_interval), so its granules "
+                                 "are known only at the end, {:.17g} s",
+                                 time, end.time));
+  }
+  return end;
+}
+
+} // namespace
 
 int export_command(const ExportArguments& arguments) {
   const std::filesystem::path results = arguments.folder / "results.h5";
@@ -15,12 +33,7 @@ int export_command(const ExportArguments& arguments) {
     export_history(read_history(results), arguments.file);
     return exit_done;
   }
-  const FinalGranules granules = read_final_granules(results);
-  if (arguments.time && !(std::abs(*arguments.time - granules.time) <= 1e-6 * granules.time)) {
-    throw UsageError(fmt::format("--time {}: not yet: this version takes no snapshots, so the granules are known only "
-                                 "at the end, {:.17g} s",
-                                 *arguments.time, granules.time));
-  }
+  const Snapshot granules = arguments.time ? granules_at(results, *arguments.time) : read_final_granules(results);
   export_granules(granules.table, arguments.file);
   return exit_done;
 }

@@ -36,7 +36,7 @@ TEST_CASE("run, then export: status 0, nothing on standard output but what was a
 
   const Outcome early = program(folder, "export small granules --time 0.01 -o early.csv");
   CHECK(early.status == 2);
-  CHECK(contains(early.errors, "not yet"));
+  CHECK(contains(early.errors, "took no snapshots"));
   CHECK_FALSE(std::filesystem::exists(folder / "early.csv"));
   CHECK(program(folder, "export small history --time 0.05 -o early.csv").status == 2);
   CHECK(program(folder, "export small granules -o /dev/full").status == 4);

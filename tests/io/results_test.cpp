@@ -40,6 +40,7 @@ GranuleTable three_granules() {
     table.spin.push_back({1e3 / x, -x, 1e-300});
     table.radius.push_back(1e-3 / x);
     table.population.push_back(i % 2);
+    table.contacts.push_back(3 - i);
   }
   return table;
 }
@@ -91,7 +92,7 @@ TEST_CASE("without the ledger its columns are not there") {
 
 TEST_CASE("granules come back bit for bit, and so do none") {
   const TemporaryFolder folder;
-  const FinalGranules granules = read_final_granules(written(folder, 1, true));
+  const Snapshot granules = read_final_granules(written(folder, 1, true));
   const GranuleTable expected = three_granules();
   CHECK(granules.time == 0.125);
   CHECK(granules.table.position == expected.position);
@@ -99,6 +100,7 @@ TEST_CASE("granules come back bit for bit, and so do none") {
   CHECK(granules.table.spin == expected.spin);
   CHECK(granules.table.radius == expected.radius);
   CHECK(granules.table.population == expected.population);
+  CHECK(granules.table.contacts == expected.contacts);
 
   ResultsWriter writer(folder / "none.h5", "", true);
   writer.write_final({}, 1.0);
@@ -188,7 +190,7 @@ with h5py.File("results.h5") as f:
   const Outcome python = shell(folder, "/usr/bin/python3 read.py");
   INFO(python.errors);
   REQUIRE(python.status == 0);
-  CHECK(contains(python.output, "grandamp 1 title = \"\xC3\xA4 scene\""));
+  CHECK(contains(python.output, "grandamp 2 title = \"\xC3\xA4 scene\""));
   CHECK(contains(python.output, "(2000,) 0.1999"));
   CHECK(contains(python.output, "J / of the granules"));
   CHECK(contains(python.output, "(3, 3) 0.125 [0, 1, 2]"));
