@@ -6,6 +6,7 @@
 #include <vector>
 #endif
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
@@ -13,7 +14,9 @@
 namespace grandamp {
 
 struct Team::Arena {
-  explicit Arena(int threads) : arena(threads) {}
+  explicit Arena(int threads)
+      : allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)), arena(threads) {}
+  tbb::global_control allowed; ///< more threads than processors, if so many were asked for
   tbb::task_arena arena;
 };
 
