@@ -137,9 +137,8 @@ SealReport check_seal(const std::filesystem::path& path) {
   if (text_of(bytes, *digests) == text) return {SealReport::State::whole, ""};
   const std::size_t part = part_for(bytes);
   for (std::size_t k = 0; k < digests->size(); ++k) {
-    const std::size_t line = text_of(bytes, {digests->begin(), digests->begin() + static_cast<std::ptrdiff_t>(k)})
-                                 .find("\n\n"); // the end of the lines so far
-    if (line == std::string::npos || text.compare(line + 1, 16, (*digests)[k]) != 0)
+    const std::size_t line = heading(bytes).size() + k * ((*digests)[k].size() + 1);
+    if (text.compare(line, (*digests)[k].size(), (*digests)[k]) != 0)
       return damaged(
           fmt::format("between byte {} and byte {}", std::max(k * part, seal_bytes), std::min(bytes, (k + 1) * part)));
   }
