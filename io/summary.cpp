@@ -33,11 +33,20 @@ Json structure_json(const RunRecord& record) {
   const ResponseStatistics& response = record.response;
   const bool reached = record.time > record.plan->window[0];
   const auto known = [reached](double value) { return reached ? Json(value) : Json(nullptr); };
-  return {{"rms_displacement", known(response.rms_displacement)},
-          {"peak_displacement", known(response.peak_displacement)},
-          {"amplitude", known(response.amplitude)},
-          {"steady", response.steady},
-          {"window", record.plan->window}};
+  Json structure{{"rms_displacement", known(response.rms_displacement)},
+                 {"peak_displacement", known(response.peak_displacement)},
+                 {"amplitude", known(response.amplitude)},
+                 {"steady", response.steady},
+                 {"window", record.plan->window}};
+  if (record.plan->scene.excitation.kind != ExcitationKind::none) return structure;
+  Json& cycles = structure["cycles"] = Json::array();
+  for (const VibrationCycle& cycle : response.cycles)
+    cycles.push_back({{"start", cycle.start},
+                      {"amplitude", cycle.amplitude},
+                      {"peak_kinetic_energy", cycle.peak_kinetic_energy},
+                      {"specific_damping_capacity", cycle.specific_damping_capacity},
+                      {"damping_ratio", cycle.damping_ratio}});
+  return structure;
 }
 
 Json energy_json(const RunRecord& record) {

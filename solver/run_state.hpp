@@ -94,6 +94,7 @@ struct RunState {
   double response_last_turn = 0.0;
   double response_turn_before = 0.0;
   std::vector<double> response_amplitudes;
+  std::vector<double> vibration_cycles;
 
   bool end_noted = false;
   std::int64_t contact_samples = 0;
@@ -195,6 +196,8 @@ template <class State, class Field> void visit_fields(State& s, Field&& field) {
   field(FieldInfo{"response/last_turn", "m", "free vibration: the last turning point"}, s.response_last_turn);
   field(FieldInfo{"response/turn_before", "m", "free vibration: the one before"}, s.response_turn_before);
   field(FieldInfo{"response/amplitudes", "m", "of whole cycles"}, s.response_amplitudes);
+  field(FieldInfo{"response/vibration_cycles", "SI", "free vibration: the swings so far and the present one"},
+        s.vibration_cycles);
 
   field(FieldInfo{"statistics/end_noted", "1", "the last instant of the run is in the statistics"}, s.end_noted);
   field(FieldInfo{"statistics/contact_samples", "1", "history samples so far"}, s.contact_samples);

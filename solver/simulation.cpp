@@ -6,6 +6,7 @@
 #include "solver/response.hpp"
 #include "solver/run_state.hpp"
 #include "solver/stepper.hpp"
+#include "solver/vibration_cycles.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -55,6 +56,11 @@ Placement placed(const Plan& plan, kernels::InstructionSet isa, int threads, con
   return placement;
 }
 
+std::optional<VibrationCycles> cycles_of(const Plan& plan) {
+  if (!plan.scene.structure || plan.scene.excitation.kind != ExcitationKind::none) return std::nullopt;
+  return VibrationCycles(plan.scene.structure->mass, plan.time_step);
+}
+
 ResponseAccumulator::State response_of(const RunState& s) {
   return {s.response_samples,   s.response_sum_of_squares,    s.response_peak,
           s.response_last_step, s.response_last_displacement, s.response_last_velocity,
@@ -101,14 +107,15 @@ struct Simulation::State {
       : plan(make_plan(scene)), isa(chosen_isa(options.isa)), isa_name(kernels::name(isa)),
         stepper(plan, placed(plan, isa, chosen_threads(options.threads, plan.granules), options), isa,
                 chosen_threads(options.threads, plan.granules)),
-        response(plan.window, forcing_period(plan.scene.excitation), plan.time_step) {}
+        response(plan.window, forcing_period(plan.scene.excitation), plan.time_step), cycles(cycles_of(plan)) {}
 
   State(const Scene& scene, const RunState& saved, const RunOptions& options)
       : plan(plan_of(scene, saved)), isa(isa_for(saved, options.isa)), isa_name(kernels::name(isa)),
         stepper(plan, saved, isa, chosen_threads(options.threads, plan.granules)),
-        response(plan.window, forcing_period(plan.scene.excitation), plan.time_step), end_noted(saved.end_noted),
-        contact_samples(saved.contact_samples), contacts_sum(saved.contacts_sum) {
+        response(plan.window, forcing_period(plan.scene.excitation), plan.time_step), cycles(cycles_of(plan)),
+        end_noted(saved.end_noted), contact_samples(saved.contact_samples), contacts_sum(saved.contacts_sum) {
     response.restore(response_of(saved));
+    if (cycles && !cycles->restore(saved.vibration_cycles)) throw StateError("the state of the cycles is none");
   }
 
   Sample sample_of(const StepRecord& record, std::int64_t step_number) const {
@@ -133,6 +140,7 @@ struct Simulation::State {
   void note(std::int64_t step_number, const StepRecord& record) {
     if (std::exchange(end_noted, false)) return; // the run was to end here, and goes on
     if (plan.scene.structure) response.add(step_number, record.enclosure.displacement, record.enclosure.velocity);
+    if (cycles) cycles->add(step_number, record.enclosure.displacement, record.enclosure.velocity);
   }
 
   Plan plan;
@@ -140,6 +148,7 @@ struct Simulation::State {
   std::string isa_name;
   Stepper stepper;
   ResponseAccumulator response;
+  std::optional<VibrationCycles> cycles; ///< free vibration
   bool end_noted = false;
   std::int64_t contact_samples = 0;
   double contacts_sum = 0.0;
@@ -238,7 +247,9 @@ GuardStatistics Simulation::guards() const {
   return state_->stepper.guards();
 }
 ResponseStatistics Simulation::response() const {
-  return state_->response.result();
+  ResponseStatistics response = state_->response.result();
+  if (state_->cycles) response.cycles = state_->cycles->result();
+  return response;
 }
 RunState Simulation::state() const {
   RunState saved;
@@ -246,6 +257,7 @@ RunState Simulation::state() const {
   saved.steps = state_->plan.steps;
   saved.window = state_->plan.window;
   save_response(state_->response.state(), saved);
+  if (state_->cycles) saved.vibration_cycles = state_->cycles->state();
   saved.end_noted = state_->end_noted;
   saved.contact_samples = state_->contact_samples;
   saved.contacts_sum = state_->contacts_sum;

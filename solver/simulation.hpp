@@ -71,6 +71,15 @@ struct GuardStatistics {
   std::int64_t escaped = 0;
 };
 
+/// One cycle of a free vibration.
+struct VibrationCycle {
+  double start = 0.0;                     ///< s
+  double amplitude = 0.0;                 ///< half the peak-to-peak, m
+  double peak_kinetic_energy = 0.0;       ///< of the structure, J
+  double specific_damping_capacity = 0.0; ///< kinetic energy lost in the cycle over its peak
+  double damping_ratio = 0.0;             ///< of the viscous damping that would lose as much
+};
+
 /// Of the structure's displacement, over the window.
 struct ResponseStatistics {
   double rms_displacement = 0.0;  ///< about zero, every step, m
@@ -78,6 +87,7 @@ struct ResponseStatistics {
   double amplitude = 0.0;         ///< half the peak-to-peak per forcing period (free: per cycle), averaged, m
   bool steady = false;            ///< the amplitude's trend over the window is below its scatter
   std::vector<double> cycle_amplitudes;
+  std::vector<VibrationCycle> cycles; ///< free vibration: of the whole run so far
 };
 
 class Profile;

@@ -72,6 +72,21 @@ TEST_CASE("the summary has every key of the contract") {
   CHECK_FALSE(summary.contains("message"));
 }
 
+TEST_CASE("free vibration tells its cycles, forced vibration has none") {
+  Plan plan = some_plan();
+  RunRecord record = some_record(plan);
+  record.response.cycles = {{0.1, 0.01, 0.5, 0.2, 0.03}, {0.2, 0.008, 0.4, 0.1, 0.01}};
+  const auto cycles = parsed(record)["structure"]["cycles"];
+  REQUIRE(cycles.size() == 2);
+  CHECK(cycles[0] == nlohmann::json{{"start", 0.1},
+                                    {"amplitude", 0.01},
+                                    {"peak_kinetic_energy", 0.5},
+                                    {"specific_damping_capacity", 0.2},
+                                    {"damping_ratio", 0.03}});
+  plan.scene.excitation.kind = ExcitationKind::harmonic;
+  CHECK_FALSE(parsed(record)["structure"].contains("cycles"));
+}
+
 TEST_CASE("what a run does not have is left out") {
   Plan plan = some_plan();
   plan.scene.structure.reset();
