@@ -1,0 +1,321 @@
+// A run taken out as a state and put into another Simulation goes on by the same bits: every field of the state, every
+// sample and statistic, at the end of it.
+#include "solver/run_state.hpp"
+#include "tests/support/runs.hpp"
+#include "tests/support/scenes.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+using namespace grandamp;
+using namespace grandamp::test;
+
+namespace {
+
+/// Names of the fields that differ in a bit; empty if none does.
+std::string differences(const RunState& a, const RunState& b) {
+  std::vector<std::string> bytes;
+  const auto as_bytes = [&bytes](const FieldInfo&, const auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_arithmetic_v<Value>)
+      bytes.emplace_back(reinterpret_cast<const char*>(&value), sizeof(value));
+    else
+      bytes.emplace_back(reinterpret_cast<const char*>(value.data()), value.size() * sizeof(value[0]));
+  };
+  visit_fields(a, as_bytes);
+  const std::vector<std::string> first = std::exchange(bytes, {});
+  visit_fields(b, as_bytes);
+  std::string names;
+  std::size_t next = 0;
+  visit_fields(a, [&](const FieldInfo& info, const auto&) {
+    if (first[next] != bytes[next]) names += std::string(info.name) + ' ';
+    ++next;
+  });
+  return names;
+}
+
+bool same(const Sample& a, const Sample& b) {
+  return std::memcmp(&a, &b, sizeof(Sample)) == 0;
+}
+
+RunOptions with_threads(int threads) {
+  RunOptions options;
+  options.threads = threads;
+  return options;
+}
+
+/// Steps, with a sample every 37.
+void go(Simulation& run, std::int64_t steps) {
+  for (; steps > 0; --steps) {
+    if (run.step_number() % 37 == 0)
+      run.step_and_sample();
+    else
+      run.step();
+  }
+}
+
+/// A short run of the scene, cut `cuts` times at uneven places, on `threads` and then `others` in turn.
+void check_cut(Scene scene, std::int64_t steps, int cuts, int threads = 1, int others = 1) {
+  scene.time.duration = static_cast<double>(steps) * *scene.time.step;
+  Simulation whole(scene, with_threads(threads));
+  REQUIRE(whole.plan().steps == steps);
+  Simulation parts(scene, with_threads(threads));
+  std::int64_t done = 0;
+  for (int cut = 1; cut <= cuts; ++cut) {
+    const std::int64_t until = steps * cut / (cuts + 1) + cut % 3;
+    go(whole, until - done);
+    go(parts, until - done);
+    done = until;
+    const RunState state = parts.state();
+    parts = Simulation(scene, state, with_threads(cut % 2 == 1 ? others : threads));
+    CHECK(differences(state, parts.state()) == "");
+    CHECK(differences(whole.state(), state) == "");
+  }
+  go(whole, steps - done);
+  go(parts, steps - done);
+  CHECK(parts.finished());
+  const RunState end = whole.state();
+  CHECK(differences(end, parts.state()) == "");
+  CHECK(end.builds > 1);
+  CHECK(same(whole.sample(), parts.sample()));
+  const GranuleTable a = whole.granules(), b = parts.granules();
+  CHECK(a.position == b.position);
+  CHECK(a.velocity == b.velocity);
+  CHECK(a.spin == b.spin);
+  const ResponseStatistics r = whole.response(), t = parts.response();
+  CHECK(std::memcmp(&r.rms_displacement, &t.rms_displacement, sizeof(double)) == 0);
+  CHECK(r.cycle_amplitudes == t.cycle_amplitudes);
+  CHECK(whole.verlet().contacts_per_granule == parts.verlet().contacts_per_granule);
+  CHECK(whole.verlet().mean_interval == parts.verlet().mean_interval);
+}
+
+Scene damper(std::size_t count) {
+  Scene scene = table_5(count, 1.0);
+  scene.time.step = 1.0e-5;
+  return scene;
+}
+
+} // namespace
+
+TEST_CASE("a state put back goes on by the same bits: structure, tuned skin, ledger") {
+  for (const int threads : {1, 2}) check_cut(damper(120), 6000, 7, threads, 3 - threads);
+}
+
+TEST_CASE("a state put back goes on by the same bits: integrators") {
+  for (const Integrator integrator : {Integrator::leapfrog, Integrator::verlet}) {
+    Scene scene = damper(60);
+    scene.time.integrator = integrator;
+    scene.output.energy = integrator == Integrator::leapfrog;
+    check_cut(scene, 3000, 4);
+  }
+}
+
+TEST_CASE("a state put back goes on by the same bits: list policies, audited") {
+  for (const ListPolicy policy : {ListPolicy::guarded, ListPolicy::predicted, ListPolicy::displacement,
+                                  ListPolicy::fixed, ListPolicy::none, ListPolicy::all_pairs}) {
+    CAPTURE(static_cast<int>(policy));
+    Scene scene = damper(60);
+    scene.verlet.policy = policy;
+    scene.verlet.audit = 10;
+    scene.verlet.skin = 0.03;
+    if (policy == ListPolicy::fixed) scene.verlet.interval = 90; // so seldom that contacts are missed
+    check_cut(scene, 5000, 5);
+  }
+}
+
+TEST_CASE("a state put back goes on by the same bits: contacts that the list missed are remembered") {
+  Scene scene = gas(150, 0.03, 1.5, 4);
+  scene.time.step = 4.0e-6;
+  scene.verlet.policy = ListPolicy::fixed;
+  scene.verlet.interval = 40;
+  scene.verlet.skin = 0.1;
+  scene.verlet.audit = 1;
+  scene.time.impact_speed = 10.0;
+  scene.time.duration = 3000 * 4.0e-6;
+  Simulation run(scene, with_threads(1));
+  std::size_t remembered = 0;
+  for (int k = 0; k < 1500 && remembered == 0; ++k) {
+    run.step();
+    remembered = run.state().unlisted.size();
+  }
+  REQUIRE(remembered > 0);
+  const std::int64_t there = run.step_number();
+  Simulation again(scene, run.state(), with_threads(1));
+  while (run.step_number() < there + 100) {
+    run.step();
+    again.step();
+  }
+  CHECK(differences(run.state(), again.state()) == "");
+}
+
+TEST_CASE("a state put back goes on by the same bits: cylinder, prescribed motion, populations") {
+  Scene scene = gas(80, 0.03, 1.0, 9);
+  scene.enclosure.shape = EnclosureShape::cylinder;
+  scene.enclosure.diameter = 0.05;
+  scene.enclosure.height = 0.03;
+  for (Vector3& p : scene.populations[0].positions) p = {p[0] + 0.01, p[1] + 0.01, p[2]};
+  Population small = scene.populations[0];
+  Population large = scene.populations[0];
+  small.name = "small";
+  small.radius = 0.8e-3;
+  small.mass = sphere_mass(0.8e-3, 2500.0);
+  large.name = "large";
+  const auto half = static_cast<std::ptrdiff_t>(scene.populations[0].positions.size() / 2);
+  for (auto member : {&Population::positions, &Population::velocities, &Population::spins}) {
+    (small.*member).erase((small.*member).begin() + half, (small.*member).end());
+    (large.*member).erase((large.*member).begin(), (large.*member).begin() + half);
+  }
+  small.count = small.positions.size();
+  large.count = large.positions.size();
+  scene.populations = {small, large};
+  scene.excitation.kind = ExcitationKind::prescribed;
+  scene.excitation.amplitude = 2.0e-3;
+  scene.excitation.frequency = 30.0;
+  scene.excitation.direction = {0.6, 0.0, 0.8};
+  scene.gravity = {0.0, 0.0, -9.81};
+  scene.time.step = 3.0e-6;
+  scene.time.impact_speed = 5.0;
+  check_cut(scene, 6000, 6);
+}
+
+TEST_CASE("a state put back goes on by the same bits: nothing but the structure, free and forced") {
+  for (const bool forced : {false, true}) {
+    Scene scene = bare_structure();
+    if (!forced) {
+      scene.excitation = {};
+      scene.structure->displacement = 1e-3;
+    }
+    scene.time.step = 1.0e-4;
+    scene.time.duration = 1.0;
+    Simulation whole(scene), first(scene);
+    go(whole, 10000);
+    go(first, 7013);
+    Simulation second(scene, first.state());
+    go(second, 10000 - 7013);
+    CHECK(differences(whole.state(), second.state()) == "");
+    CHECK(same(whole.sample(), second.sample()));
+    CHECK(whole.response().cycle_amplitudes == second.response().cycle_amplitudes);
+    CHECK(whole.response().cycle_amplitudes.size() >= 7);
+  }
+}
+
+TEST_CASE("a state put back goes on by the same bits: 25,000 granules in several segments, 1 and 2 threads") {
+  Scene scene = gas(1, 0.16, 1.0, 1);
+  Population& population = scene.populations[0];
+  population.positions.clear();
+  population.velocities.clear();
+  population.spins.clear();
+  const double pitch = 3.4e-3;
+  for (unsigned n = 0; n < 25000; ++n) {
+    const unsigned x = n % 30, y = n / 30 % 30, z = n / 900;
+    const double s = 0.7e-3 * ((n * 7919U) % 1000U) - 0.35, t = 0.7e-3 * ((n * 104729U) % 1000U) - 0.35;
+    add_granule(scene, {2e-3 + pitch * x, 2e-3 + pitch * y, 2e-3 + pitch * z}, {s, t, s - t});
+  }
+  scene.enclosure.size = {0.105, 0.105, 0.105};
+  scene.time.step = 6.0e-6;
+  scene.time.impact_speed = 3.0;
+  REQUIRE(population.count == 25000);
+  scene.time.duration = 300 * 6.0e-6;
+  {
+    Simulation run(scene, with_threads(1));
+    run.step();
+    CHECK(run.state().list.segment_blocks.size() >= 2);
+  }
+  check_cut(scene, 300, 3, 2, 1);
+}
+
+TEST_CASE("a run that was to end goes on, and its statistics with it") {
+  Scene scene = damper(40);
+  scene.time.step = 0x1p-17; // durations are then whole steps without rounding
+  scene.output.window = {{0.02, 0.05}};
+  scene.time.duration = 8192 * 0x1p-17;
+  Simulation whole(scene, with_threads(1));
+  scene.time.duration = 6600 * 0x1p-17;
+  Simulation shorter(scene, with_threads(1));
+  REQUIRE(whole.plan().time_step == shorter.plan().time_step);
+  go(whole, 8192);
+  go(shorter, 6600);
+  CHECK(shorter.finished());
+  shorter.sample();
+  Simulation longer(scene, shorter.state(), with_threads(1));
+  CHECK(longer.finished());
+  longer.end_at(8192, scene.output.window);
+  go(longer, 8192 - 6600);
+  CHECK(differences(whole.state(), longer.state()) == "");
+}
+
+TEST_CASE("the window of a run that goes on further holds what can be had of it") {
+  Scene scene = bare_structure();
+  scene.time.step = 1.0e-4;
+  scene.time.duration = 1.0;
+  Simulation run(scene);
+  go(run, 8000); // of 10,000; the window is the last half
+  CHECK_THROWS_AS(run.end_at(7999), std::invalid_argument);
+  CHECK_THROWS_AS(run.end_at(12000, {{0.1, 1.0}}), std::invalid_argument);
+  Simulation soon(scene, run.state()), late(scene, run.state());
+  soon.end_at(12000);
+  CHECK(soon.plan().window == std::array<double, 2>{0.5, 1.2});
+  late.end_at(20000);
+  CHECK(late.plan().window == std::array<double, 2>{1.0, 2.0});
+  CHECK(late.state().response_samples == 0);
+  CHECK(soon.state().response_samples == run.state().response_samples);
+}
+
+TEST_CASE("a state of another scene, or a damaged one, is refused") {
+  const Scene scene = [] {
+    Scene s = damper(30);
+    s.time.duration = 0.02;
+    return s;
+  }();
+  Simulation run(scene, with_threads(1));
+  go(run, 500);
+  const RunState good = run.state();
+  const auto refused = [&](const Scene& of, const RunState& state, const char* why) {
+    try {
+      Simulation(of, state, with_threads(1));
+      const std::string what = why;
+      FAIL_CHECK(what);
+    } catch (const StateError& error) {
+      CHECK_MESSAGE(std::string(error.what()).find(why) != std::string::npos, error.what());
+    }
+  };
+  CHECK_NOTHROW(Simulation(scene, good, with_threads(1)));
+  Scene other = scene;
+  other.time.step = 0.9e-5;
+  refused(other, good, "time step");
+  other = scene;
+  other.contact.granule.restitution = 0.8;
+  refused(other, good, "constants");
+  other = scene;
+  other.verlet.policy = ListPolicy::displacement;
+  refused(other, good, "built_at");
+
+  RunState bad = good;
+  bad.fused = !good.fused;
+  refused(scene, bad, "kernels");
+  bad = good;
+  bad.id[3] = bad.id[4];
+  refused(scene, bad, "granules/id");
+  bad = good;
+  bad.list.pairs[1] = 30;
+  refused(scene, bad, "list/pairs");
+  bad = good;
+  bad.list.wall_counts[0] += 1;
+  refused(scene, bad, "list/wall");
+  bad = good;
+  bad.list.block_rows[1] -= 1;
+  refused(scene, bad, "list/");
+  bad = good;
+  bad.position[7] = std::nan("");
+  refused(scene, bad, "granules/position");
+  bad = good;
+  bad.velocity.pop_back();
+  refused(scene, bad, "granules/velocity");
+  bad = good;
+  bad.list.segment_rows.clear();
+  refused(scene, bad, "list/segment_rows");
+}
