@@ -8,6 +8,7 @@ import re
 import shutil
 import statistics
 import subprocess
+import tempfile
 
 import matplotlib
 
@@ -19,10 +20,10 @@ import matplotlib.pyplot as pyplot  # noqa: E402
 perf = pathlib.Path(__file__).resolve().parent.parent
 build = pathlib.Path(os.environ["GRANDAMP_PERF_BUILD"])
 results = pathlib.Path(os.environ.get("GRANDAMP_PERF_RESULTS", perf / "results"))
-states = build / "states"
 repeats = int(os.environ.get("REPEATS", "3"))
 #: Fewer steps and smaller cases: to see that everything works, not to measure.
 quick = os.environ.get("QUICK", "0") != "0"
+states = build / ("states-quick" if quick else "states")
 
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
 
@@ -34,6 +35,20 @@ def run(command, **options):
     if done.returncode != 0:
         raise SystemExit(f"{' '.join(command)}\nexit status {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
     return done.stdout
+
+
+def processor_seconds(command, folder=None):
+    """Output of a command, both streams, and the processor time that it took, s."""
+    command = [str(part) for part in command]
+    with tempfile.TemporaryFile("w+") as out:
+        process = subprocess.Popen(command, cwd=folder, env=ENVIRONMENT, stdout=out, stderr=subprocess.STDOUT)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        out.seek(0)
+        text = out.read()
+    if process.returncode != 0:
+        raise SystemExit(f"{' '.join(command)}\nexit status {process.returncode}\n{text[-2000:]}")
+    return text, usage.ru_utime + usage.ru_stime
 
 
 def overrides(settings):
@@ -138,6 +153,8 @@ class Report:
 
 
 def number(value, digits=3):
+    if value is None:
+        return "-"
     return f"{value:.{digits}g}" if abs(value) < 1000 else f"{value:,.0f}"
 
 
