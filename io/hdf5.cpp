@@ -8,8 +8,7 @@
 namespace grandamp::hdf5 {
 namespace {
 
-constexpr std::size_t chunk_bytes = 1 << 16;      // about; what a reader of one row must take at least
-constexpr std::size_t most_chunk_items = 1 << 18; // of a row's first dimension
+constexpr std::size_t most_chunk_rows = 8192;
 
 /// What HDF5's error stack says at its most specific level; the system's own words if they are in it.
 std::string last_reason() {
@@ -38,30 +37,6 @@ Handle text_type(std::size_t length) {
   H5Tset_cset(type.id(), H5T_CSET_UTF8);
   H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
   return type;
-}
-
-hid_t memory_type(Number type) {
-  switch (type) {
-  case Number::real64:
-    return H5T_NATIVE_DOUBLE;
-  case Number::integer64:
-    return H5T_NATIVE_INT64;
-  case Number::integer32:
-    return H5T_NATIVE_INT32;
-  }
-  return H5T_NATIVE_DOUBLE;
-}
-
-hid_t file_type(Number type) {
-  switch (type) {
-  case Number::real64:
-    return H5T_IEEE_F64LE;
-  case Number::integer64:
-    return H5T_STD_I64LE;
-  case Number::integer32:
-    return H5T_STD_I32LE;
-  }
-  return H5T_IEEE_F64LE;
 }
 
 } // namespace
@@ -149,43 +124,31 @@ void File::create_group(const std::string& name) {
       owned(H5Gcreate2(file_.id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose, "create " + name);
 }
 
-Handle File::create_rows(const std::string& name, Number type, const std::vector<std::size_t>& row, std::size_t rows) {
+Handle File::create_column(const std::string& name, std::size_t rows) {
   const Silence silence;
-  std::size_t row_bytes = H5Tget_size(file_type(type));
-  for (const std::size_t items : row) row_bytes *= items;
-  // Small datasets take little room, large ones few chunks; a row is in one chunk unless it is huge.
-  const std::size_t most = std::max<std::size_t>(chunk_bytes / std::max<std::size_t>(row_bytes, 1), 1);
-  std::vector<hsize_t> size{0}, limit{H5S_UNLIMITED}, chunk{std::clamp<std::size_t>(rows, 1, most)};
-  for (const std::size_t items : row) {
-    size.push_back(items);
-    limit.push_back(items);
-    chunk.push_back(std::clamp<std::size_t>(items, 1, most_chunk_items));
-  }
-  const int rank = static_cast<int>(size.size());
-  const Handle space = owned(H5Screate_simple(rank, size.data(), limit.data()), H5Sclose, "create " + name);
+  const hsize_t start = 0;
+  const hsize_t unlimited = H5S_UNLIMITED;
+  // Short ones take little room, long ones few chunks.
+  const hsize_t chunk = std::clamp<std::size_t>(rows, 1, most_chunk_rows);
+  const Handle space = owned(H5Screate_simple(1, &start, &unlimited), H5Sclose, "create " + name);
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  require(H5Pset_chunk(creation.id(), rank, chunk.data()), "create " + name);
+  require(H5Pset_chunk(creation.id(), 1, &chunk), "create " + name);
   return owned(
-      H5Dcreate2(file_.id(), name.c_str(), file_type(type), space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+      H5Dcreate2(file_.id(), name.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
       H5Dclose, "create " + name);
 }
 
-void File::append(const Handle& dataset, std::size_t rows_before, std::size_t rows, Number type, const void* values) {
+void File::append(const Handle& column, std::size_t rows_before, const std::vector<double>& values) {
   const Silence silence;
   const std::string what = "append to the file";
-  Handle target = owned(H5Dget_space(dataset.id()), H5Sclose, what);
-  std::vector<hsize_t> count(static_cast<std::size_t>(H5Sget_simple_extent_ndims(target.id())));
-  H5Sget_simple_extent_dims(target.id(), count.data(), nullptr);
-  std::vector<hsize_t> start(count.size(), 0);
-  start[0] = rows_before;
-  count[0] = rows_before + rows;
-  require(H5Dset_extent(dataset.id(), count.data()), what);
-  if (std::find(count.begin(), count.end(), hsize_t{0}) != count.end()) return;
-  count[0] = rows;
-  target = owned(H5Dget_space(dataset.id()), H5Sclose, what);
-  require(H5Sselect_hyperslab(target.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), what);
-  const Handle source = owned(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose, what);
-  require(H5Dwrite(dataset.id(), memory_type(type), source.id(), target.id(), H5P_DEFAULT, values), what);
+  const hsize_t start = rows_before;
+  const hsize_t count = values.size();
+  const hsize_t total = start + count;
+  require(H5Dset_extent(column.id(), &total), what);
+  const Handle target = owned(H5Dget_space(column.id()), H5Sclose, what);
+  require(H5Sselect_hyperslab(target.id(), H5S_SELECT_SET, &start, nullptr, &count, nullptr), what);
+  const Handle source = owned(H5Screate_simple(1, &count, nullptr), H5Sclose, what);
+  require(H5Dwrite(column.id(), H5T_NATIVE_DOUBLE, source.id(), target.id(), H5P_DEFAULT, values.data()), what);
 }
 
 void File::write_values(const std::string& name, hid_t type, const void* data, const std::vector<hsize_t>& shape) {
@@ -247,29 +210,6 @@ std::vector<std::int64_t> File::read_integers(const std::string& name) const {
   std::vector<std::int64_t> values(count_of(dataset, name));
   if (values.empty()) return values;
   require(H5Dread(dataset.id(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read " + name);
-  return values;
-}
-
-std::vector<double> File::read_row(const std::string& name, std::size_t row) const {
-  const Silence silence;
-  const Handle dataset = owned(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "read " + name);
-  const Handle space = owned(H5Dget_space(dataset.id()), H5Sclose, "read " + name);
-  const int rank = H5Sget_simple_extent_ndims(space.id());
-  std::vector<hsize_t> count(static_cast<std::size_t>(std::max(rank, 0)));
-  if (rank < 1 || H5Sget_simple_extent_dims(space.id(), count.data(), nullptr) < 0 || row >= count[0])
-    throw FileError(path_.string() + ": " + name + " has no row " + std::to_string(row));
-  std::vector<hsize_t> start(count.size(), 0);
-  start[0] = row;
-  count[0] = 1;
-  std::size_t items = 1;
-  for (const hsize_t each : count) items *= each;
-  std::vector<double> values(items);
-  if (values.empty()) return values;
-  require(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
-          "read " + name);
-  const Handle memory = owned(H5Screate_simple(rank, count.data(), nullptr), H5Sclose, "read " + name);
-  require(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data()),
-          "read " + name);
   return values;
 }
 

@@ -55,8 +55,6 @@ private:
   void* data_ = nullptr;
 };
 
-enum class Number { real64, integer64, integer32 };
-
 /// An open file. Every member throws FileError ("PATH: cannot WHAT: REASON").
 ///
 /// A file that is created takes its place, whole and sealed, when it is closed; until then, and if it is never closed,
@@ -75,10 +73,9 @@ public:
   std::vector<std::string> members(const std::string& group) const;
   void create_group(const std::string& name);
 
-  /// A dataset that can grow by rows, each a number or an array of the shape `row`; `rows` are to be expected.
-  Handle create_rows(const std::string& name, Number type, const std::vector<std::size_t>& row, std::size_t rows);
-  /// `values` are doubles, std::int64_t or std::int32_t, as `type` says.
-  void append(const Handle& dataset, std::size_t rows_before, std::size_t rows, Number type, const void* values);
+  /// A one-dimensional dataset of doubles that can grow; `rows` are to be expected.
+  Handle create_column(const std::string& name, std::size_t rows);
+  void append(const Handle& column, std::size_t rows_before, const std::vector<double>& values);
 
   /// Datasets of fixed size; `width` values per row make it two-dimensional.
   void write(const std::string& name, const std::vector<double>& values, std::size_t width = 1);
@@ -89,8 +86,6 @@ public:
   /// Any numeric dataset, row by row.
   std::vector<double> read_doubles(const std::string& name) const;
   std::vector<std::int64_t> read_integers(const std::string& name) const;
-  /// One row of a dataset that has rows: numbers, or arrays one behind another.
-  std::vector<double> read_row(const std::string& name, std::size_t row) const;
   /// A second name for the same object.
   void link(const std::string& object, const std::string& name);
   std::string read_text(const std::string& name) const;

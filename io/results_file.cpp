@@ -19,7 +19,7 @@ void write_history(hdf5::File& file, const RecordLog& rows) {
   for (const HistoryColumn& column : history_columns) {
     if (columns.size() == rows.record_bytes() / sizeof(double)) break; // the ledger's stand last
     const std::string name = std::string("/history/") + column.name;
-    columns.push_back(file.create_rows(name, hdf5::Number::real64, {}, static_cast<std::size_t>(rows.count())));
+    columns.push_back(file.create_column(name, static_cast<std::size_t>(rows.count())));
     file.set_attribute(name, "units", std::string(column.units));
     file.set_attribute(name, "description", std::string(column.description));
   }
@@ -31,7 +31,7 @@ void write_history(hdf5::File& file, const RecordLog& rows) {
     values.resize(static_cast<std::size_t>(count));
     for (std::size_t c = 0; c < columns.size(); ++c) {
       for (std::size_t row = 0; row < values.size(); ++row) values[row] = block[row * columns.size() + c];
-      file.append(columns[c], static_cast<std::size_t>(first), values.size(), hdf5::Number::real64, values.data());
+      file.append(columns[c], static_cast<std::size_t>(first), values);
     }
     first += count;
   }

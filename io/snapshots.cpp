@@ -2,13 +2,13 @@
 
 #include "solver/errors.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstring>
 
 namespace grandamp {
 namespace {
-
-using hdf5::Number;
 
 struct Quantity {
   const char* name;
@@ -16,6 +16,7 @@ struct Quantity {
   const char* description;
 };
 
+constexpr Quantity id{"id", "1", "number of the granule, in the scene's order"};
 constexpr Quantity position{"position", "m", "centre, in the enclosure's frame"};
 constexpr Quantity velocity{"velocity", "m/s", "of the centre, in the laboratory's frame"};
 constexpr Quantity speed{"speed", "m/s", "magnitude of the velocity"};
@@ -24,9 +25,16 @@ constexpr Quantity radius{"radius", "m", "of the granule"};
 constexpr Quantity population{"population", "1", "index of the scene's [[granules]] table, from 0"};
 constexpr Quantity contacts{"contacts", "1", "with other granules and with walls, each"};
 
-void describe(hdf5::File& file, const std::string& name, const Quantity& quantity) {
+template <class Values, class... Width>
+void write(hdf5::File& file, const std::string& group, const Quantity& quantity, const Values& values, Width... width) {
+  const std::string name = group + "/" + quantity.name;
+  file.write(name, values, static_cast<std::size_t>(width)...);
   file.set_attribute(name, "units", std::string(quantity.units));
   file.set_attribute(name, "description", std::string(quantity.description));
+}
+
+std::string snapshot_group(std::size_t index) {
+  return fmt::format("/snapshots/{:06}", index);
 }
 
 template <class T> void put(std::byte*& to, const std::vector<T>& values) {
@@ -71,11 +79,28 @@ std::vector<std::int32_t> whole_numbers(const std::vector<double>& values) {
   return numbers;
 }
 
-void require_alike(const GranuleTable& table, const std::string& where) {
+std::vector<std::int64_t> ids_of(const GranuleTable& table) {
+  std::vector<std::int64_t> ids(table.position.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<std::int64_t>(i);
+  return ids;
+}
+
+/// What moves is in one group, what never changes in another or in the same.
+Snapshot read_granules(const hdf5::File& file, const std::string& moving, const std::string& constant) {
+  Snapshot granules;
+  granules.time = file.double_attribute(moving, "time");
+  GranuleTable& table = granules.table;
+  table.position = rows_of_three(file.read_doubles(moving + "/position"));
+  table.velocity = rows_of_three(file.read_doubles(moving + "/velocity"));
+  table.spin = rows_of_three(file.read_doubles(moving + "/spin"));
+  table.contacts = whole_numbers(file.read_doubles(moving + "/contacts"));
+  table.radius = file.read_doubles(constant + "/radius");
+  table.population = whole_numbers(file.read_doubles(constant + "/population"));
   const std::size_t count = table.position.size();
   if (table.velocity.size() != count || table.spin.size() != count || table.radius.size() != count ||
       table.population.size() != count || table.contacts.size() != count)
-    throw FileError(where + " is damaged: its members differ in length");
+    throw FileError(file.path().string() + ": " + moving + " is damaged: its members differ in length");
+  return granules;
 }
 
 } // namespace
@@ -117,37 +142,27 @@ Snapshot read_snapshot(const RecordLog& log, std::int64_t index) {
 }
 
 void write_snapshots(hdf5::File& file, const RecordLog& log) {
-  Snapshot snapshot = read_snapshot(log, 0);
-  const std::size_t granules = snapshot.table.position.size();
-  const auto rows = static_cast<std::size_t>(log.count());
   file.create_group("/snapshots");
-  const auto create = [&](const Quantity& quantity, Number type, const std::vector<std::size_t>& shape) {
-    const std::string name = std::string("/snapshots/") + quantity.name;
-    hdf5::Handle dataset = file.create_rows(name, type, shape, rows);
-    describe(file, name, quantity);
-    return dataset;
-  };
-  const hdf5::Handle times = create({"time", "s", "of each snapshot"}, Number::real64, {});
-  const hdf5::Handle positions = create(position, Number::real64, {granules, 3});
-  const hdf5::Handle velocities = create(velocity, Number::real64, {granules, 3});
-  const hdf5::Handle speeds = create(speed, Number::real64, {granules});
-  const hdf5::Handle spins = create(spin, Number::real64, {granules, 3});
-  const hdf5::Handle counts = create(contacts, Number::integer32, {granules});
-  for (std::size_t k = 0; k < rows; ++k) {
-    if (k > 0) snapshot = read_snapshot(log, static_cast<std::int64_t>(k));
+  std::vector<double> times;
+  for (std::int64_t k = 0; k < log.count(); ++k) {
+    const Snapshot snapshot = read_snapshot(log, k);
     const GranuleTable& table = snapshot.table;
-    file.append(times, k, 1, Number::real64, &snapshot.time);
-    file.append(positions, k, 1, Number::real64, table.position.data());
-    file.append(velocities, k, 1, Number::real64, table.velocity.data());
-    file.append(speeds, k, 1, Number::real64, speeds_of(table).data());
-    file.append(spins, k, 1, Number::real64, table.spin.data());
-    file.append(counts, k, 1, Number::integer32, table.contacts.data());
+    if (k == 0) { // what never changes
+      write(file, "/snapshots", id, ids_of(table));
+      write(file, "/snapshots", radius, table.radius);
+      write(file, "/snapshots", population, table.population);
+    }
+    const std::string group = snapshot_group(static_cast<std::size_t>(k));
+    file.create_group(group);
+    file.set_attribute(group, "time", snapshot.time);
+    write(file, group, position, flat(table.position), 3);
+    write(file, group, velocity, flat(table.velocity), 3);
+    write(file, group, spin, flat(table.spin), 3);
+    write(file, group, speed, speeds_of(table));
+    write(file, group, contacts, table.contacts);
+    times.push_back(snapshot.time);
   }
-  // These never change.
-  file.write("/snapshots/radius", snapshot.table.radius);
-  describe(file, "/snapshots/radius", radius);
-  file.write("/snapshots/population", snapshot.table.population);
-  describe(file, "/snapshots/population", population);
+  write(file, "/snapshots", {"time", "s", "of each snapshot"}, times);
 }
 
 std::vector<double> read_snapshot_times(const hdf5::File& file) {
@@ -155,52 +170,26 @@ std::vector<double> read_snapshot_times(const hdf5::File& file) {
 }
 
 Snapshot read_snapshot(const hdf5::File& file, std::size_t index) {
-  Snapshot snapshot;
-  snapshot.time = file.read_row("/snapshots/time", index).front();
-  GranuleTable& table = snapshot.table;
-  table.position = rows_of_three(file.read_row("/snapshots/position", index));
-  table.velocity = rows_of_three(file.read_row("/snapshots/velocity", index));
-  table.spin = rows_of_three(file.read_row("/snapshots/spin", index));
-  table.contacts = whole_numbers(file.read_row("/snapshots/contacts", index));
-  table.radius = file.read_doubles("/snapshots/radius");
-  table.population = whole_numbers(file.read_doubles("/snapshots/population"));
-  require_alike(table, file.path().string() + ": /snapshots");
-  return snapshot;
+  const std::string group = snapshot_group(index);
+  return read_granules(file, group, "/snapshots");
 }
 
 void write_final_granules(hdf5::File& file, const Snapshot& granules) {
   const GranuleTable& table = granules.table;
-  std::vector<std::int64_t> id(table.position.size());
-  for (std::size_t i = 0; i < id.size(); ++i) id[i] = static_cast<std::int64_t>(i);
-  file.create_group("/final");
-  file.set_attribute("/final", "time", granules.time);
-  file.write("/final/id", id);
-  describe(file, "/final/id", {"id", "1", "number of the granule, in the scene's order"});
-  const auto write = [&file](const Quantity& quantity, const auto& values, auto... width) {
-    const std::string name = std::string("/final/") + quantity.name;
-    file.write(name, values, width...);
-    describe(file, name, quantity);
-  };
-  write(position, flat(table.position), std::size_t{3});
-  write(velocity, flat(table.velocity), std::size_t{3});
-  write(spin, flat(table.spin), std::size_t{3});
-  write(radius, table.radius);
-  write(population, table.population);
-  write(contacts, table.contacts);
+  const std::string group = "/final";
+  file.create_group(group);
+  file.set_attribute(group, "time", granules.time);
+  write(file, group, id, ids_of(table));
+  write(file, group, position, flat(table.position), 3);
+  write(file, group, velocity, flat(table.velocity), 3);
+  write(file, group, spin, flat(table.spin), 3);
+  write(file, group, radius, table.radius);
+  write(file, group, population, table.population);
+  write(file, group, contacts, table.contacts);
 }
 
 Snapshot read_final_granules(const hdf5::File& file) {
-  Snapshot granules;
-  granules.time = file.double_attribute("/final", "time");
-  GranuleTable& table = granules.table;
-  table.position = rows_of_three(file.read_doubles("/final/position"));
-  table.velocity = rows_of_three(file.read_doubles("/final/velocity"));
-  table.spin = rows_of_three(file.read_doubles("/final/spin"));
-  table.radius = file.read_doubles("/final/radius");
-  table.population = whole_numbers(file.read_doubles("/final/population"));
-  table.contacts = whole_numbers(file.read_doubles("/final/contacts"));
-  require_alike(table, file.path().string() + ": /final");
-  return granules;
+  return read_granules(file, "/final", "/final");
 }
 
 } // namespace grandamp

@@ -8,9 +8,7 @@
 
 namespace grandamp {
 
-/// Snapshots of `granules` granules at `times`, s, in the HDF5 file of that name (as seen from the XDMF file).
-std::string xdmf_text(const std::string& results_name, const std::vector<double>& times, std::size_t granules);
-
+/// Of snapshots of `granules` granules at `times`, s, in the HDF5 file of that name (as seen from the XDMF file).
 /// Replaces the file as a whole. Throws FileError.
 void write_xdmf(const std::filesystem::path& path, const std::string& results_name, const std::vector<double>& times,
                 std::size_t granules);
