@@ -55,6 +55,13 @@ private:
   void* data_ = nullptr;
 };
 
+/// What a dataset is, for a person.
+struct Dataset {
+  std::string type;                      ///< "float64", "int32", "text", ...
+  std::vector<unsigned long long> shape; ///< empty: one value
+  std::string units, description;
+};
+
 /// An open file. Every member throws FileError ("PATH: cannot WHAT: REASON").
 ///
 /// A file that is created takes its place, whole and sealed, when it is closed; until then, and if it is never closed,
@@ -69,6 +76,10 @@ public:
   void close();
 
   bool has(const std::string& name) const;
+  /// Nothing if there is no dataset of that name.
+  std::optional<Dataset> dataset(const std::string& name) const;
+  /// Names and values, as text, of an object's attributes.
+  std::vector<std::pair<std::string, std::string>> attributes(const std::string& object) const;
   /// Names of a group's members, in the order of their creation.
   std::vector<std::string> members(const std::string& group) const;
   void create_group(const std::string& name);

@@ -150,12 +150,15 @@ int command_line(int argc, char** argv) {
   export_app->add_option("-o", exported.file, "The CSV file")->type_name("FILE")->required();
   add_quiet(*export_app, export_quiet);
 
+  InspectArguments inspected;
+  CLI::App* const inspect_app = app.add_subcommand("inspect", "What a results or checkpoint file holds; is it whole?");
+  inspect_app->add_option("FILE", inspected.file, "results.h5 or checkpoint.h5")->required();
+
   refuse(app, "resume", "Go on from a checkpoint");
   refuse(app, "sweep", "A case per point of a grid");
   refuse(app, "optimise", "The best design");
   refuse(app, "study", "What accuracy costs in time");
   refuse(app, "report", "A page with pictures of a run");
-  refuse(app, "inspect", "What a results file holds");
 
   try {
     app.parse(argc, argv);
@@ -172,6 +175,7 @@ int command_line(int argc, char** argv) {
 
   if (run_app->parsed()) return guarded(run.scene, [&run] { return run_command(run); });
   if (check_app->parsed()) return guarded(check.scene, [&check] { return check_command(check); });
+  if (inspect_app->parsed()) return guarded({}, [&inspected] { return inspect_command(inspected); });
   return guarded({}, [&exported] { return export_command(exported); });
 }
 

@@ -40,9 +40,14 @@ struct ExportArguments {
   std::filesystem::path file;
 };
 
+struct InspectArguments {
+  std::filesystem::path file;
+};
+
 int run_command(const RunArguments& arguments);
 int check_command(const CheckArguments& arguments);
 int export_command(const ExportArguments& arguments);
+int inspect_command(const InspectArguments& arguments);
 
 /// Throws UsageError unless this machine runs the instruction set of that name; empty: none asked for.
 void require_isa(const std::string& isa);

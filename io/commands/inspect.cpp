@@ -1,0 +1,16 @@
+#include "io/inspect.hpp"
+#include "io/commands/commands.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace grandamp {
+
+int inspect_command(const InspectArguments& arguments) {
+  const Inspection inspection = inspect(arguments.file);
+  fmt::print("{}", inspection.text);
+  if (!inspection.whole) spdlog::error("{}: is not known to be whole", arguments.file.string());
+  return inspection.whole ? exit_done : exit_file;
+}
+
+} // namespace grandamp
