@@ -1,6 +1,7 @@
 #include "io/run.hpp"
 
 #include "io/output_schedule.hpp"
+#include "io/profile_report.hpp"
 #include "io/results.hpp"
 #include "io/run_folder.hpp"
 #include "io/summary.hpp"
@@ -95,6 +96,8 @@ public:
     record.isa = simulation.isa();
     record.threads = simulation.threads();
     record.initial = record.end = simulation.sample();
+    if (options.profile) record.profile = &profile_;
+    simulation.set_profile(options.profile ? &profile_ : nullptr);
   }
 
   void go() {
@@ -114,7 +117,7 @@ public:
     record.verlet = simulation_.verlet();
     record.guards = simulation_.guards();
     record.response = simulation_.response();
-    results_.close();
+    timed(profile(), Phase::output, 0, [&] { results_.close(); });
     record.wall_time = seconds_since(start_);
     tell_warnings();
     tell_progress(record.wall_time);
@@ -146,14 +149,14 @@ private:
 
   void keep(const Sample& sample) {
     record.end = sample;
-    results_.append(sample);
+    timed(profile(), Phase::output, 0, [&] { results_.append(sample); });
     amplitude_.add(sample);
     schedule_.advance();
   }
 
   void take_snapshot_if_due() {
     if (!snapshots_.due(simulation_.step_number())) return;
-    results_.append_snapshot(simulation_.granules(), simulation_.time());
+    timed(profile(), Phase::output, 0, [&] { results_.append_snapshot(simulation_.granules(), simulation_.time()); });
     snapshots_.advance();
   }
 
@@ -164,8 +167,10 @@ private:
       tell_warnings();
       tell_progress(now);
     }
-    results_.fold_if_due();
+    timed(profile(), Phase::output, 0, [&] { results_.fold_if_due(); });
   }
+
+  Profile* profile() { return options_.profile ? &profile_ : nullptr; }
 
   void tell_warnings() {
     const std::vector<std::string> warnings = simulation_.take_warnings();
@@ -192,6 +197,7 @@ private:
   OutputSchedule schedule_, snapshots_;
   RecentAmplitude amplitude_;
   Clock::time_point start_;
+  Profile profile_; ///< only with options.profile
   std::int64_t steps_between_looks_ = 1;
   double told_ = 0.0;
 };
@@ -240,6 +246,7 @@ RunResult run_scene(const SceneDocument& document, const std::filesystem::path& 
   if (simulation.plan().scene.structure) result.response = recorder.record.response;
   result.summary = summary_text(recorder.record);
   replace_file(files.summary(), result.summary);
+  if (options.profile) replace_file(files.trace(), trace_text(*recorder.record.profile));
   return result;
 }
 

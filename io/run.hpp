@@ -35,6 +35,7 @@ struct RunSceneOptions {
   int threads = 0;    ///< 0: chosen
   std::string isa;    ///< "generic", "avx2", "avx512"; empty: the best this machine runs
   bool force = false; ///< replace the files of a run that the folder holds already
+  bool profile = false; ///< time by phase in the summary, and a trace of the beginning in trace.json
   /// Told before anything runs what is worth knowing of the scene, if there is anything.
   std::function<void(const std::vector<Problem>&)> notes;
   /// Told about ten times a second of wall time, and at the end.

@@ -15,6 +15,7 @@ public:
   std::filesystem::path scene() const { return folder_ / "scene.toml"; }
   std::filesystem::path summary() const { return folder_ / "summary.json"; }
   std::filesystem::path results() const { return folder_ / "results.h5"; }
+  std::filesystem::path trace() const { return folder_ / "trace.json"; }
 
   /// Removes the files of an earlier run, and nothing else, and writes scene.toml. Throws FileError.
   void begin(const std::string& scene_text);

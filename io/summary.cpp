@@ -135,6 +135,11 @@ std::string summary_text(const RunRecord& record) {
                        {"max_speed", record.guards.max_speed},
                        {"max_closing_speed", record.guards.max_closing},
                        {"escaped", record.guards.escaped}};
+  if (record.profile != nullptr) {
+    const auto seconds = record.profile->totals();
+    for (std::size_t phase = 0; phase < seconds.size(); ++phase)
+      summary["profile"][phase_names[phase]] = seconds[phase];
+  }
   // Text that is not UTF-8 (a title) must not cost the run its summary.
   return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/run.hpp"
+#include "solver/profile.hpp"
 #include "solver/simulation.hpp"
 
 #include <string>
@@ -24,6 +25,7 @@ struct RunRecord {
   VerletStatistics verlet;
   GuardStatistics guards;
   ResponseStatistics response;
+  const Profile* profile = nullptr; ///< null: none was asked for
 };
 
 /// What is left of the energy balance from t = 0 to `end`, over the largest of |work in| and the kinetic, elastic and

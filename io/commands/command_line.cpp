@@ -121,8 +121,8 @@ int command_line(int argc, char** argv) {
   run_app->add_flag("--force", run.force, "Replace the run that the folder holds");
   add_quiet(*run_app, run.quiet);
   run_app->add_flag("--json", run.json, "Print the summary on standard output");
-  run_app->add_flag_callback(
-      "--profile", [] { throw UsageError("--profile: not yet in this version"); }, "(not yet)");
+  run_app->add_flag("--profile", run.profile,
+                    "Time by phase in the summary; trace.json for Perfetto or chrome://tracing");
   run_app
       ->add_option_function<double>(
           "--max-wall",

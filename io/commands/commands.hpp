@@ -20,6 +20,7 @@ struct RunArguments {
   int threads = 0;                    ///< 0: chosen
   std::string isa;                    ///< empty: the best
   bool force = false;
+  bool profile = false;
   bool quiet = false;
   bool json = false;
 };

@@ -72,6 +72,7 @@ int run_command(const RunArguments& arguments) {
   options.threads = arguments.threads;
   options.isa = arguments.isa;
   options.force = arguments.force;
+  options.profile = arguments.profile;
   options.notes = [&](const std::vector<Problem>& notes) { tell_notes(arguments.scene, notes); };
   options.stop_requested = [] { return interrupted != 0; };
   options.progress = [&](const RunProgress& progress) {
