@@ -80,17 +80,20 @@ def make(name):
 
 def lattice(count, radius, box):
     """Layers of squares, every other one moved by half a place: loose enough to be shaken apart at once."""
-    pitch = 2.06 * radius
-    across = [int((length - 2.0 * radius) / pitch) for length in box[:2]]
-    step = [(length - 2.02 * radius - 0.5 * pitch) / (n - 1) for length, n in zip(box, across)]
-    height = 1.02 * math.sqrt(max(0.0, 4.0 * radius**2 - (step[0] ** 2 + step[1] ** 2) / 4.0))
+    pitch, margin = 2.06 * radius, 1.01 * radius
+    across = [int((length - 2.0 * margin) / pitch + 0.5) for length in box[:2]]
+    step = [(length - 2.0 * margin) / (n - 0.5) for length, n in zip(box, across)]
+    # Clear of the layer below, and of the one below that.
+    height = max(1.02 * math.sqrt(max(0.0, 4.0 * radius**2 - (step[0] ** 2 + step[1] ** 2) / 4.0)), 1.03 * radius)
     layers = -(-count // (across[0] * across[1]))
     z, y, x = np.meshgrid(np.arange(layers), np.arange(across[1]), np.arange(across[0]), indexing="ij")
     places = np.stack([c.ravel() for c in (x, y, z)], 1)[:count].astype(float)
     odd = places[:, 2] % 2
-    places[:, 0] = 1.01 * radius + step[0] * places[:, 0] + odd * pitch / 2.0
-    places[:, 1] = 1.01 * radius + step[1] * places[:, 1] + odd * pitch / 2.0
-    places[:, 2] = 1.01 * radius + height * places[:, 2]
+    for axis in range(2):
+        places[:, axis] = margin + step[axis] * (places[:, axis] + 0.5 * odd)
+    places[:, 2] = margin + height * places[:, 2]
+    if places[:, 2].max() > box[2] - margin:
+        raise SystemExit(f"{count} granules do not fit a box of {box} as a lattice")
     jitter = np.random.default_rng(3).uniform(-0.004, 0.004, places.shape) * radius
     state = np.zeros((count, 11))
     state[:, 0] = np.arange(count)
