@@ -97,11 +97,13 @@ def effects_of(symbol):
     numbers = dict(re.findall(r"\(grandamp::kernels::(Damping|Friction|Variety|Observation)\)(\d)", symbol))
     if "ContactEffects" not in symbol:
         return symbol
-    words = {"Damping": ("none", "tsuji", "linear"), "Friction": ("none", "without rotation", "coulomb"),
-             "Variety": ("alike", "sizes", "materials"),
-             "Observation": ("none", "energies", "ledger", "ledger and energies")}
+    source = (perf.parent / "kernels" / "effects.hpp").read_text(encoding="utf-8")
+    words = {}
+    for kind in ("Damping", "Friction", "Variety", "Observation"):
+        body = re.sub(r"//.*", "", re.search(rf"enum class {kind} {{(.*?)}}", source, re.S)[1])
+        words[kind] = [word.strip() for word in body.split(",") if word.strip()]
     # A name leaves out zeros at its end.
-    return ", ".join(f"{kind.lower()} {word[int(numbers.get(kind, 0))]}" for kind, word in words.items())
+    return ", ".join(f"{kind.lower()} {word[int(numbers.get(kind, 0))].replace('_', ' ')}" for kind, word in words.items())
 
 
 def measure(file, counted_steps, steps, windows):
