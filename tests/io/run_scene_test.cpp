@@ -107,7 +107,7 @@ TEST_CASE("what is recorded does not change what happens") {
 TEST_CASE("exported granules start another scene as they were") {
   const TemporaryFolder folder;
   run_scene(read_scene_text(small_scene(), "small.toml"), folder / "run", one_thread());
-  const FinalGranules end = read_final_granules(folder / "run/results.h5");
+  const Snapshot end = read_final_granules(folder / "run/results.h5");
   CHECK(end.time == doctest::Approx(0.05).epsilon(1e-12));
   export_granules(end.table, folder / "bed.csv");
 
