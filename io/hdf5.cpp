@@ -66,6 +66,14 @@ File File::create(const std::filesystem::path& path) {
 }
 
 File File::open(const std::filesystem::path& path) {
+  const SealReport seal = check_seal(path);
+  if (seal.state == SealReport::State::damaged) throw FileError(path.string() + ": is damaged: " + seal.what);
+  if (seal.state == SealReport::State::unsealed)
+    throw FileError(path.string() + ": was not written by this program, or its start is damaged");
+  return open_at_risk(path);
+}
+
+File File::open_at_risk(const std::filesystem::path& path) {
   const Silence silence;
   File opened(path);
   opened.file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);

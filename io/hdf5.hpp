@@ -70,7 +70,10 @@ class File {
 public:
   /// Replaces a file that exists.
   static File create(const std::filesystem::path& path);
+  /// For reading: a file that was closed here and is whole, by its seal; HDF5 1.10 may crash on one that is not.
   static File open(const std::filesystem::path& path);
+  /// Any file, damaged or not: only in a process that may crash.
+  static File open_at_risk(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const noexcept { return path_; }
   void close();

@@ -108,6 +108,7 @@ fuzz() {
     -artifact_prefix="$found/" "$found/corpus" "tests/fuzz/${name%_fuzz}_corpus"
 }
 
+[ $full -eq 1 ] && test_packages=("${full_test_packages[@]}")
 need packages install_packages "${test_packages[@]}"
 check layering bash tests/layering/check.sh
 check format format
