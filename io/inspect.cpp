@@ -100,8 +100,9 @@ private:
     // Of many groups that are alike, as snapshots are, the first few tell all.
     std::size_t groups = 0, left_out = 0;
     std::string last;
+    const std::string prefix = group == "/" ? group : group + "/";
     for (const std::string& member : file_.members(group)) {
-      const std::string name = (group == "/" ? group : group + "/") + member;
+      const std::string name = prefix + member;
       const std::optional<hdf5::Dataset> dataset = file_.dataset(name);
       if (dataset) {
         add(name, *dataset);

@@ -22,17 +22,17 @@ public:
                        "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\">\n"
                        "          {}\n        </Topology>\n"
                        "        <Geometry GeometryType=\"XYZ\">\n          {}\n        </Geometry>\n",
-                       time, granules_, item("id", whole_, 8, " 1"), item(group + "position", real_, 8, " 3")) +
-           attribute("radius", "Scalar", item("radius", real_, 8)) +
-           attribute("speed", "Scalar", item(group + "speed", real_, 8)) +
-           attribute("velocity", "Vector", item(group + "velocity", real_, 8, " 3")) +
-           attribute("spin", "Vector", item(group + "spin", real_, 8, " 3")) +
-           attribute("population", "Scalar", item("population", whole_, 4)) +
-           attribute("contacts", "Scalar", item(group + "contacts", whole_, 4)) + "      </Grid>\n";
+                       time, granules_, item("id", whole, 8, " 1"), item(group + "position", real, 8, " 3")) +
+           attribute("radius", "Scalar", item("radius", real, 8)) +
+           attribute("speed", "Scalar", item(group + "speed", real, 8)) +
+           attribute("velocity", "Vector", item(group + "velocity", real, 8, " 3")) +
+           attribute("spin", "Vector", item(group + "spin", real, 8, " 3")) +
+           attribute("population", "Scalar", item("population", whole, 4)) +
+           attribute("contacts", "Scalar", item(group + "contacts", whole, 4)) + "      </Grid>\n";
   }
 
 private:
-  static constexpr std::string_view real_ = "Float", whole_ = "Int";
+  static constexpr std::string_view real = "Float", whole = "Int";
 
   std::string item(const std::string& name, std::string_view type, int bytes, std::string_view width = "") const {
     return fmt::format(R"(<DataItem NumberType="{}" Precision="{}" Dimensions="{}{}" Format="HDF">{}{}</DataItem>)",
