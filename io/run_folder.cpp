@@ -3,6 +3,11 @@
 #include "io/run.hpp"
 #include "io/text_file.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <system_error>
 #include <utility>
 
@@ -36,7 +41,7 @@ RunFolder::RunFolder(fs::path folder, bool force) : folder_(std::move(folder)) {
     throw FileError(folder_.string() + ": is a file, not a folder; choose another with -o");
   }
   if (!force) {
-    for (const fs::path& file : {scene(), summary(), results()}) {
+    for (const fs::path& file : {scene(), summary(), results(), checkpoints().newest}) {
       if (fs::exists(file, error)) {
         throw UsageError(folder_.string() + ": holds a run already (" + file.filename().string() +
                          "); choose another folder with -o, or replace the run with --force");
@@ -46,11 +51,44 @@ RunFolder::RunFolder(fs::path folder, bool force) : folder_(std::move(folder)) {
   made_ = fs::create_directories(folder_, error);
   if (error) throw FileError(folder_.string() + ": cannot make the folder: " + error.message());
   try {
+    lock();
     try_to_write(folder_);
   } catch (...) {
     abandon();
+    unlock();
     throw;
   }
+}
+
+RunFolder::~RunFolder() {
+  unlock();
+}
+
+RunFolder RunFolder::of_run(fs::path folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) throw FileError(folder.string() + ": there is no such folder");
+  return RunFolder(std::move(folder), Existing{});
+}
+
+RunFolder::RunFolder(fs::path folder, Existing) : folder_(std::move(folder)) {
+  try {
+    lock();
+    try_to_write(folder_);
+  } catch (...) {
+    unlock();
+    throw;
+  }
+}
+
+void RunFolder::lock() {
+  locked_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  // Where a file system has no locks, nothing is locked.
+  if (locked_ >= 0 && ::flock(locked_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw UsageError(folder_.string() + ": another program of grandamp is running in this folder");
+}
+
+void RunFolder::unlock() noexcept {
+  if (locked_ >= 0) ::close(std::exchange(locked_, -1));
 }
 
 void RunFolder::begin(const std::string& scene_text) {
@@ -59,6 +97,7 @@ void RunFolder::begin(const std::string& scene_text) {
     fs::remove(file, error);
     if (error) throw FileError(file.string() + ": cannot remove the file of the earlier run: " + error.message());
   }
+  checkpoints().remove();
   replace_file(scene(), scene_text);
 }
 

@@ -1,6 +1,8 @@
 // The folder of a run: what it holds, and what a new run may replace in it.
 #pragma once
 
+#include "io/checkpoint.hpp"
+
 #include <filesystem>
 #include <string>
 
@@ -9,13 +11,20 @@ namespace grandamp {
 class RunFolder {
 public:
   /// Makes the folder if need be and makes sure that it can be written to; files in it stay as they are.
-  /// Throws UsageError if it holds a run and `force` is false, FileError if it cannot be made or written to.
+  /// Throws UsageError if it holds a run and `force` is false, or while another program runs in it, FileError if it
+  /// cannot be made or written to.
   RunFolder(std::filesystem::path folder, bool force);
+  /// The folder of a run that is to go on. Throws FileError if there is none or it cannot be written to.
+  static RunFolder of_run(std::filesystem::path folder);
+  ~RunFolder();
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
 
   std::filesystem::path scene() const { return folder_ / "scene.toml"; }
   std::filesystem::path summary() const { return folder_ / "summary.json"; }
   std::filesystem::path results() const { return folder_ / "results.h5"; }
   std::filesystem::path trace() const { return folder_ / "trace.json"; }
+  CheckpointFiles checkpoints() const { return CheckpointFiles(folder_); }
 
   /// Removes the files of an earlier run, and nothing else, and writes scene.toml. Throws FileError.
   void begin(const std::string& scene_text);
@@ -23,8 +32,14 @@ public:
   void abandon() noexcept;
 
 private:
+  struct Existing {};
+  RunFolder(std::filesystem::path folder, Existing);
+  void lock();
+  void unlock() noexcept;
+
   std::filesystem::path folder_;
   bool made_ = false;
+  int locked_ = -1; ///< file descriptor of the folder
 };
 
 } // namespace grandamp

@@ -119,8 +119,6 @@ void read_output(TableReader& root, Scene& scene) {
   output.snapshot_interval = table.number("snapshot_interval", not_negative).value_or(output.snapshot_interval);
   check_snapshots(table, output.snapshot_interval, scene.time.duration);
   output.checkpoint_interval = table.number("checkpoint_interval", not_negative).value_or(output.checkpoint_interval);
-  if (output.checkpoint_interval != 0.0 && output.checkpoint_interval != OutputControl{}.checkpoint_interval)
-    table.not_yet("checkpoint_interval", "a checkpoint", "0, or the default 60");
   read_window(table, scene);
   output.energy = table.flag("energy").value_or(true);
   table.finish();

@@ -67,6 +67,7 @@ Json energy_json(const RunRecord& record) {
 const char* name(RunStatus status) {
   switch (status) {
   case RunStatus::done:
+  case RunStatus::done_before:
     return "done";
   case RunStatus::interrupted:
     return "interrupted";

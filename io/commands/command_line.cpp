@@ -42,6 +42,16 @@ void add_quiet(CLI::App& command, bool& quiet) {
   command.add_flag("--quiet", quiet, "Only warnings and errors");
 }
 
+void add_profile(CLI::App& command, bool& profile) {
+  command.add_flag("--profile", profile, "Time by phase in the summary; trace.json for Perfetto or chrome://tracing");
+}
+
+void add_max_wall(CLI::App& command, double& seconds) {
+  command.add_option("--max-wall", seconds, "Write a checkpoint after so much wall time and stop with status 130")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
+}
+
 void refuse(CLI::App& app, const std::string& command, const std::string& what) {
   CLI::App* const refused = app.add_subcommand(command, what + " (not yet)");
   refused->allow_extras();
@@ -121,14 +131,19 @@ int command_line(int argc, char** argv) {
   run_app->add_flag("--force", run.force, "Replace the run that the folder holds");
   add_quiet(*run_app, run.quiet);
   run_app->add_flag("--json", run.json, "Print the summary on standard output");
-  run_app->add_flag("--profile", run.profile,
-                    "Time by phase in the summary; trace.json for Perfetto or chrome://tracing");
-  run_app
-      ->add_option_function<double>(
-          "--max-wall",
-          [](double) { throw UsageError("--max-wall: not yet in this version, which has no checkpoints"); },
-          "(not yet)")
-      ->type_name("SECONDS");
+  add_profile(*run_app, run.profile);
+  add_max_wall(*run_app, run.max_wall);
+
+  ResumeArguments resumed;
+  CLI::App* const resume_app = app.add_subcommand("resume", "Go on with a run from its newest checkpoint");
+  resume_app->add_option("DIR", resumed.folder, "Folder of a run")->required();
+  add_overrides(*resume_app, resumed.overrides);
+  add_threads(*resume_app, resumed.threads);
+  add_isa(*resume_app, resumed.isa);
+  add_quiet(*resume_app, resumed.quiet);
+  resume_app->add_flag("--json", resumed.json, "Print the summary on standard output");
+  add_profile(*resume_app, resumed.profile);
+  add_max_wall(*resume_app, resumed.max_wall);
 
   CheckArguments check;
   CLI::App* const check_app = app.add_subcommand("check", "Validate a scene and tell what would run; runs nothing");
@@ -154,7 +169,6 @@ int command_line(int argc, char** argv) {
   CLI::App* const inspect_app = app.add_subcommand("inspect", "What a results or checkpoint file holds; is it whole?");
   inspect_app->add_option("FILE", inspected.file, "results.h5 or checkpoint.h5")->required();
 
-  refuse(app, "resume", "Go on from a checkpoint");
   refuse(app, "sweep", "A case per point of a grid");
   refuse(app, "optimise", "The best design");
   refuse(app, "study", "What accuracy costs in time");
@@ -171,9 +185,11 @@ int command_line(int argc, char** argv) {
     spdlog::error("{}", error.what());
     return exit_usage;
   }
-  if (run.quiet || check.quiet || export_quiet) spdlog::set_level(spdlog::level::warn);
+  if (run.quiet || resumed.quiet || check.quiet || export_quiet) spdlog::set_level(spdlog::level::warn);
 
   if (run_app->parsed()) return guarded(run.scene, [&run] { return run_command(run); });
+  if (resume_app->parsed())
+    return guarded(resumed.folder / "scene.toml", [&resumed] { return resume_command(resumed); });
   if (check_app->parsed()) return guarded(check.scene, [&check] { return check_command(check); });
   if (inspect_app->parsed()) return guarded({}, [&inspected] { return inspect_command(inspected); });
   return guarded({}, [&exported] { return export_command(exported); });

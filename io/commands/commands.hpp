@@ -20,6 +20,18 @@ struct RunArguments {
   int threads = 0;                    ///< 0: chosen
   std::string isa;                    ///< empty: the best
   bool force = false;
+  double max_wall = 0.0; ///< s; 0: no end
+  bool profile = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+struct ResumeArguments {
+  std::filesystem::path folder;
+  std::vector<std::string> overrides;
+  int threads = 0;
+  std::string isa; ///< empty: that of before, or one with its bits
+  double max_wall = 0.0;
   bool profile = false;
   bool quiet = false;
   bool json = false;
@@ -46,6 +58,7 @@ struct InspectArguments {
 };
 
 int run_command(const RunArguments& arguments);
+int resume_command(const ResumeArguments& arguments);
 int check_command(const CheckArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int inspect_command(const InspectArguments& arguments);

@@ -85,15 +85,16 @@ TEST_CASE("bad usage and bad scenes: status 2 and where it is wrong") {
   put_scene(folder);
   for (const char* arguments :
        {"", "run", "dance small.toml", "run small.toml --colour red", "run small.toml --threads 0",
-        "run small.toml --threads many", "run small.toml --isa z80", "run small.toml --max-wall 3", "resume small",
-        "sweep small.toml --vary a=1:2:3", "optimise small.toml", "study accuracy small.toml", "report small",
-        "inspect", "export small pictures -o x.csv", "export small history"}) {
+        "run small.toml --threads many", "run small.toml --isa z80", "run small.toml --max-wall 0", "resume",
+        "resume small --force", "sweep small.toml --vary a=1:2:3", "optimise small.toml", "study accuracy small.toml",
+        "report small", "inspect", "export small pictures -o x.csv", "export small history"}) {
     const Outcome outcome = program(folder, arguments);
     CHECK_MESSAGE(outcome.status == 2, arguments);
     CHECK_MESSAGE(contains(outcome.errors, "error: "), arguments);
     CHECK_MESSAGE(outcome.output.empty(), arguments);
   }
-  CHECK(contains(program(folder, "resume small").errors, "not yet"));
+  CHECK(contains(program(folder, "sweep small").errors, "not yet"));
+  CHECK(program(folder, "resume small").status == 4);
 
   std::string text = small_scene();
   text.replace(text.find("radius = 1.5e-3"), 15, "radius = -1    ");
