@@ -52,7 +52,12 @@ PairRange classed(PairList& list, std::size_t first, const VerletList::Search& s
     a.pairs = list.data() + from;
     a.count = to - from;
     a.reach = share * search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0);
-    return from + search.split(a);
+    // Vectors are stored whole: what stands behind the part must not be lost.
+    std::array<CandidatePair, kernels::list_padding> behind;
+    std::copy_n(list.data() + to, behind.size(), behind.begin());
+    const std::size_t end = from + search.split(a);
+    std::copy_n(behind.begin(), behind.size(), list.data() + to);
+    return end;
   };
   const std::size_t half = near(first, list.count(), 0.5);
   range.end = {near(first, half, 0.25), half, near(half, list.count(), 0.75), 0};
