@@ -295,8 +295,10 @@ TEST_CASE("a state of another scene, or a damaged one, is refused") {
   refused(other, good, "built_at");
 
   RunState bad = good;
-  bad.fused = !good.fused;
-  refused(scene, bad, "kernels");
+  bad.fused = true;
+  RunOptions generic = with_threads(1);
+  generic.isa = "generic";
+  CHECK_THROWS_AS(Simulation(scene, bad, generic), StateError);
   bad = good;
   bad.id[3] = bad.id[4];
   refused(scene, bad, "granules/id");
