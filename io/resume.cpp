@@ -52,7 +52,7 @@ std::string isa_for(const Checkpoint& checkpoint, const std::string& asked) {
   std::string other;
   for (const InstructionSet set : {InstructionSet::avx512, InstructionSet::avx2, InstructionSet::generic}) {
     if (!kernels::available(set)) continue;
-    const std::string name = kernels::name(set);
+    std::string name = kernels::name(set);
     if (fuses(set) != checkpoint.state.fused) {
       if (name == asked)
         throw UsageError(
