@@ -143,6 +143,14 @@ struct Simulation::State {
     if (cycles) cycles->add(step_number, record.enclosure.displacement, record.enclosure.velocity);
   }
 
+  /// No step starts from the last instant, which belongs to the statistics like all others.
+  void note_end() {
+    const std::int64_t now = stepper.step_number();
+    if (now < plan.steps || end_noted) return;
+    note(now, stepper.trial(false));
+    end_noted = true;
+  }
+
   Plan plan;
   kernels::InstructionSet isa;
   std::string isa_name;
@@ -184,6 +192,7 @@ bool Simulation::finished() const {
 void Simulation::step() {
   const std::int64_t at = step_number();
   state_->note(at, state_->stepper.step(false));
+  state_->note_end();
 }
 
 Sample Simulation::step_and_sample() {
@@ -196,16 +205,12 @@ Sample Simulation::step_and_sample() {
     ++s.contact_samples;
     s.contacts_sum += static_cast<double>(sample.contacts) / static_cast<double>(s.plan.granules);
   }
+  s.note_end();
   return sample;
 }
 
 Sample Simulation::sample() {
-  const StepRecord record = state_->stepper.trial(true);
-  if (finished() && !state_->end_noted) {
-    state_->note(step_number(), record);
-    state_->end_noted = true;
-  }
-  return state_->sample_of(record, step_number());
+  return state_->sample_of(state_->stepper.trial(true), step_number());
 }
 
 GranuleTable Simulation::granules() {

@@ -54,7 +54,7 @@ TEST_CASE("a run cut at random steps and resumed has the results of one never cu
   }
 }
 
-TEST_CASE("a finished run says so; --set time.duration goes on as if it had been meant so from the start") {
+TEST_CASE("a finished run says so, and --set time.duration goes on as if it had been meant so from the start") {
   const TemporaryFolder folder;
   // Durations that are whole numbers of a step without rounding, a window that both have, and a closing speed given: an
   // estimate looks at the whole duration, and a run that goes on keeps the one that its step was chosen by.
@@ -82,7 +82,7 @@ TEST_CASE("a finished run says so; --set time.duration goes on as if it had been
   CHECK(contains(content_of(folder / "run/scene.toml"), "duration = 0.0625"));
 }
 
-TEST_CASE("a duration that is no whole number of steps is rounded, and said; one in the past is refused") {
+TEST_CASE("a duration that is no whole number of steps is rounded, and said, and one in the past is refused") {
   const TemporaryFolder folder;
   run_scene(scene_of(small_scene()), folder / "run", stopping_after(2000));
   std::vector<Problem> notes;
@@ -99,7 +99,7 @@ TEST_CASE("a duration that is no whole number of steps is rounded, and said; one
   CHECK(summary["structure"]["window"] == nlohmann::json({0.01, 0.02}));
 }
 
-TEST_CASE("output intervals may change for the time to come; the granules move by the same bits") {
+TEST_CASE("output intervals may change for the time to come, and the granules move by the same bits") {
   const TemporaryFolder folder;
   run_scene(scene_of(small_scene()), folder / "whole", threads(1));
   run_scene(scene_of(small_scene()), folder / "run", stopping_after(5000));

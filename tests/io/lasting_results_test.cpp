@@ -137,7 +137,7 @@ TEST_CASE("a run that was closed can be gone on with") {
   CHECK(dump(folder, "") == expected);
 }
 
-TEST_CASE("records that a power cut spoiled are dropped; fewer than a checkpoint needs is told") {
+TEST_CASE("records that a power cut spoiled are dropped, and fewer than a checkpoint needs is told") {
   const TemporaryFolder folder;
   ResultsPosition position;
   {
