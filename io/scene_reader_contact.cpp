@@ -46,10 +46,10 @@ private:
     damping_known_ = damping || !table_.has("damping");
     contact_.damping = damping.value_or(NormalDamping::tsuji);
     const auto friction = table_.choice<FrictionLaw>(
-        "friction", {{"coulomb", FrictionLaw::coulomb}, {"none", FrictionLaw::none}}, {"spring"});
+        "friction", {{"coulomb", FrictionLaw::coulomb}, {"spring", FrictionLaw::spring}, {"none", FrictionLaw::none}});
     friction_known_ = friction || !table_.has("friction");
     contact_.friction = friction.value_or(FrictionLaw::coulomb);
-    if (table_.flag("tension") == false) table_.not_yet("tension", "tension = false", "true");
+    contact_.tension = table_.flag("tension").value_or(true);
     contact_.rotation = table_.flag("rotation").value_or(true);
   }
 
@@ -139,7 +139,9 @@ private:
       if (key.empty() && granules_.any)
         table.missing("restitution", "needed by damping = \"tsuji\"", "restitution above 0 and at most 1, or alpha");
       if (key == "restitution") constants.restitution = table.number(key, {0.0, 1.0, false, true});
-      if (key == "alpha") constants.alpha = table.number(key, {0.0, largest_alpha, true, false});
+      // A contact that only pushes bears any alpha.
+      if (key == "alpha")
+        constants.alpha = table.number(key, contact_.tension ? Range{0.0, largest_alpha, true, false} : not_negative);
       break;
     }
     case NormalDamping::linear:
@@ -157,15 +159,29 @@ private:
   }
 
   void read_friction(TableReader& table, ContactConstants& constants) {
-    for (const std::string_view key : {"tangential_stiffness", "tangential_damping"})
-      table.idle(key, "only friction = \"spring\" has it, and this version cannot do that yet", "friction");
     if (contact_.friction == FrictionLaw::none) {
-      table.idle("friction", "contact.friction is \"none\"", "no coefficient; or contact.friction = \"coulomb\"");
+      for (const std::string_view key : {"friction", "tangential_stiffness", "tangential_damping"})
+        table.idle(key, "contact.friction is \"none\"", "no such key; or contact.friction = \"coulomb\"");
       return;
     }
+    const bool spring = contact_.friction == FrictionLaw::spring;
     if (!table.has("friction") && granules_.any)
-      table.missing("friction", "needed by contact.friction = \"coulomb\"", "a number at least 0");
+      table.missing("friction", fmt::format("needed by contact.friction = \"{}\"", spring ? "spring" : "coulomb"),
+                    "a number at least 0");
     constants.friction = table.number("friction", not_negative);
+    if (!spring) {
+      for (const std::string_view key : {"tangential_stiffness", "tangential_damping"})
+        table.idle(key, "only friction = \"spring\" has it", "friction; or contact.friction = \"spring\"");
+      return;
+    }
+    if (!table.has("stiffness"))
+      table.idle("tangential_stiffness", "it goes with a stiffness; young and poisson give the tangential one, too",
+                 "stiffness and tangential_stiffness, or neither");
+    else if (!table.has("tangential_stiffness") && granules_.any)
+      table.missing("tangential_stiffness", "needed by contact.friction = \"spring\" beside a stiffness",
+                    "a number at least 0, in N/m^1.5, of two granules of reference_radius");
+    constants.tangential_stiffness = table.number("tangential_stiffness", not_negative);
+    constants.tangential_damping = table.number("tangential_damping", not_negative);
   }
 
   void read_wall_material(TableReader& wall, ContactConstants& constants) {

@@ -24,11 +24,24 @@ struct GranuleArrays {
   std::uint32_t ghost = 0; ///< number of granules
 };
 
+/// The memory of contacts (springs only): rows parallel to a list, entry by entry.
+struct SpringArguments {
+  SpringRow* rows = nullptr;
+  std::uint32_t* touched = nullptr; ///< the step of the last touch
+  std::uint32_t* slots = nullptr;   ///< scratch: where in the list the touching ones stand; as many as `touching`
+  std::uint32_t now = 0;            ///< this step's number
+  std::uint32_t before = 0;         ///< and that of the one before
+  double time_step = 0.0;           ///< s
+  SpringLawRow law{};
+  const SpringLawRow* laws = nullptr; ///< as PairArguments::laws, WallArguments::laws
+};
+
 /// What contacts told. max_overlap and max_closing go in as the largest so far.
 struct ContactResult {
   double max_overlap = 0.0;  ///< over the smaller radius
   double max_closing = 0.0;  ///< m/s
-  double elastic = 0.0;      ///< J; only with energies
+  double elastic = 0.0;      ///< of overlaps, J; only with energies
+  double spring = 0.0;       ///< of tangential springs, J; only with energies
   std::int64_t contacts = 0; ///< only with energies
 };
 
@@ -43,6 +56,7 @@ struct PairArguments {
   double radius = 0.0;       ///< of every granule (Variety::alike), m
   double mass = 0.0;         ///< of every granule (Variety::alike), kg
   double friction_cap = 0.0; ///< c (2/7, or 1 without rotation) / dt, 1/s
+  SpringArguments springs;   ///< rows of `pairs`
 };
 
 /// Candidates tested before their contacts are worked off.
@@ -69,6 +83,7 @@ struct WallArguments {
   double enclosure_inverse_mass = 0.0;   ///< of a structure, 1/kg; else 0
   double friction_inverse_mass = 0.0;    ///< share of the structure in the friction's cap, 1/kg
   double friction_cap = 0.0;             ///< as in PairArguments
+  SpringArguments springs;               ///< rows of `list`
 };
 
 struct WallResult : ContactResult {

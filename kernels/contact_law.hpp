@@ -5,6 +5,7 @@
 #include "kernels/effects.hpp"
 #include "kernels/friction.hpp"
 #include "kernels/hertz.hpp"
+#include "kernels/spring.hpp"
 
 namespace grandamp::kernels {
 
@@ -17,6 +18,7 @@ struct alignas(32) LawRow {
 };
 
 template <class S> struct LawVectors { typename S::Vector stiffness, damping, friction; };
+template <class S> struct SpringLawVectors { typename S::Vector stiffness, damping; };
 
 /// From granule i to its partner: n points from i to the partner.
 template <class S> struct ContactGeometry {
@@ -31,6 +33,17 @@ template <class S> struct ContactGeometry {
   Vector friction_mass; ///< effective, for the friction's cap
 };
 
+/// What a contact with a memory has besides: last step's spring, which becomes this step's.
+template <class S> struct ContactMemory {
+  using Vector = typename S::Vector;
+  Spring<S> spring;
+  SpringLawVectors<S> law;
+  Vector time_step;
+  bool moved_otherwise = false; ///< the velocities that forces see are not those that brought the granules here
+  Vector mx, my, mz;            ///< if so, those: v_i - v_j
+  Vector wx, wy, wz;            ///< and s_i + s_j
+};
+
 /// On granule i; the partner feels -f and the same turn.
 template <class S> struct ContactForces {
   using Vector = typename S::Vector;
@@ -38,13 +51,67 @@ template <class S> struct ContactForces {
   Vector tx, ty, tz; ///< lever n x f_t
   Vector damping;    ///< D_n d', along -n on i
   Vector rx, ry, rz; ///< f_t
-  Vector elastic;    ///< energy of the spring
+  Vector elastic;    ///< energy of the overlap
+  Vector spring;     ///< energy of the tangential spring
   Vector closing;    ///< d'
 };
 
+/// v - (v.n) n + a (s x n): the velocity of the contact point across the normal, in place of v.
+template <class S, bool rotates>
+GRANDAMP_INLINE void slip_of(const ContactGeometry<S>& c, typename S::Vector closing, const typename S::Vector& sx,
+                             const typename S::Vector& sy, const typename S::Vector& sz, typename S::Vector& ux,
+                             typename S::Vector& uy, typename S::Vector& uz) {
+  using Vector = typename S::Vector;
+  ux = S::fnma(closing, c.nx, ux);
+  uy = S::fnma(closing, c.ny, uy);
+  uz = S::fnma(closing, c.nz, uz);
+  if constexpr (rotates) {
+    const Vector wx = c.lever * sx, wy = c.lever * sy, wz = c.lever * sz;
+    ux = S::fnma(wz, c.ny, S::fma(wy, c.nz, ux));
+    uy = S::fnma(wx, c.nz, S::fma(wz, c.nx, uy));
+    uz = S::fnma(wy, c.nx, S::fma(wx, c.ny, uz));
+  }
+}
+
+/// -f_t of spring, dashpot and slider at the slip u; the memory moves on by a step.
+template <class S, ContactEffects E>
+GRANDAMP_INLINE void spring_friction(const ContactGeometry<S>& c, ContactMemory<S>& memory, typename S::Vector most,
+                                     typename S::Vector root, typename S::Vector closing, typename S::Vector ux,
+                                     typename S::Vector uy, typename S::Vector uz, typename S::Vector& rx,
+                                     typename S::Vector& ry, typename S::Vector& rz) {
+  using Vector = typename S::Vector;
+  Vector mx = ux, my = uy, mz = uz;
+  if (memory.moved_otherwise) {
+    mx = memory.mx, my = memory.my, mz = memory.mz;
+    const Vector along = S::fma(mz, c.nz, S::fma(my, c.ny, mx * c.nx));
+    slip_of<S, E.rotates()>(c, along, memory.wx, memory.wy, memory.wz, mx, my, mz);
+  }
+  Spring<S>& spring = memory.spring;
+  const Vector time = loading_time<S>(spring.root, c.overlap, closing, memory.time_step);
+  turn_and_ease<S>(spring, c.nx, c.ny, c.nz, root);
+  const Vector k = memory.law.stiffness * root * time;
+  spring.fx = S::fnma(k, mx, spring.fx);
+  spring.fy = S::fnma(k, my, spring.fy);
+  spring.fz = S::fnma(k, mz, spring.fz);
+  const Vector held =
+      held_at<S>(most, S::fma(spring.fz, spring.fz, S::fma(spring.fy, spring.fy, spring.fx * spring.fx)));
+  spring.fx = held * spring.fx;
+  spring.fy = held * spring.fy;
+  spring.fz = held * spring.fz;
+  spring.root = root;
+  rx = S::fma(memory.law.damping, ux, S::broadcast(0.0) - spring.fx);
+  ry = S::fma(memory.law.damping, uy, S::broadcast(0.0) - spring.fy);
+  rz = S::fma(memory.law.damping, uz, S::broadcast(0.0) - spring.fz);
+  const Vector all = held_at<S>(most, S::fma(rz, rz, S::fma(ry, ry, rx * rx)));
+  rx = all * rx;
+  ry = all * ry;
+  rz = all * rz;
+}
+
+/// `memory` only with effects that remember.
 template <class S, ContactEffects E>
 GRANDAMP_INLINE ContactForces<S> contact_forces(const ContactGeometry<S>& c, const LawVectors<S>& law,
-                                                typename S::Vector friction_cap) {
+                                                typename S::Vector friction_cap, ContactMemory<S>* memory = nullptr) {
   using Vector = typename S::Vector;
   ContactForces<S> out;
   const Vector root = hertz_root<S>(c.radius, c.overlap);
@@ -55,8 +122,12 @@ GRANDAMP_INLINE ContactForces<S> contact_forces(const ContactGeometry<S>& c, con
   Vector normal = spring;
   if constexpr (E.damped()) {
     const Vector coefficient = damping_coefficient<S, E.damping>(law.damping, c.mass, law.stiffness, root);
-    if constexpr (E.ledger()) out.damping = coefficient * out.closing;
     normal = S::fma(coefficient, out.closing, spring);
+    if constexpr (E.only_pushes()) {
+      normal = S::max(normal, S::broadcast(0.0));
+      if constexpr (E.ledger()) out.damping = normal - spring;
+    } else if constexpr (E.ledger())
+      out.damping = coefficient * out.closing;
   }
 
   if constexpr (!E.rubs()) {
@@ -65,18 +136,19 @@ GRANDAMP_INLINE ContactForces<S> contact_forces(const ContactGeometry<S>& c, con
     out.fy = minus * c.ny;
     out.fz = minus * c.nz;
   } else {
-    Vector ux = S::fnma(out.closing, c.nx, c.vx);
-    Vector uy = S::fnma(out.closing, c.ny, c.vy);
-    Vector uz = S::fnma(out.closing, c.nz, c.vz);
-    if constexpr (E.rotates()) {
-      const Vector wx = c.lever * c.sx, wy = c.lever * c.sy, wz = c.lever * c.sz;
-      ux = S::fnma(wz, c.ny, S::fma(wy, c.nz, ux));
-      uy = S::fnma(wx, c.nz, S::fma(wz, c.nx, uy));
-      uz = S::fnma(wy, c.nx, S::fma(wx, c.ny, uz));
+    Vector ux = c.vx, uy = c.vy, uz = c.vz;
+    slip_of<S, E.rotates()>(c, out.closing, c.sx, c.sy, c.sz, ux, uy, uz);
+    Vector rx, ry, rz; // -f_t
+    if constexpr (E.remembers()) {
+      spring_friction<S, E>(c, *memory, law.friction * S::abs(normal), root, out.closing, ux, uy, uz, rx, ry, rz);
+      if constexpr (E.energies()) out.spring = spring_energy<S>(memory->spring, memory->law.stiffness);
+    } else {
+      const Vector slip_squared = S::fma(uz, uz, S::fma(uy, uy, ux * ux));
+      const Vector g = coulomb_coefficient<S>(law.friction, normal, slip_squared, friction_cap * c.friction_mass);
+      rx = g * ux;
+      ry = g * uy;
+      rz = g * uz;
     }
-    const Vector slip_squared = S::fma(uz, uz, S::fma(uy, uy, ux * ux));
-    const Vector g = coulomb_coefficient<S>(law.friction, normal, slip_squared, friction_cap * c.friction_mass);
-    const Vector rx = g * ux, ry = g * uy, rz = g * uz; // -f_t
     const Vector zero = S::broadcast(0.0);
     out.fx = S::fnma(normal, c.nx, zero - rx);
     out.fy = S::fnma(normal, c.ny, zero - ry);

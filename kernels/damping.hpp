@@ -11,7 +11,7 @@ namespace grandamp::kernels {
 template <class S, Damping D>
 GRANDAMP_INLINE typename S::Vector damping_coefficient(typename S::Vector constant, typename S::Vector mass,
                                                        typename S::Vector C, typename S::Vector root) {
-  if constexpr (D == Damping::tsuji)
+  if constexpr (D == Damping::tsuji || D == Damping::tsuji_without_tension)
     return constant * S::sqrt(mass * C * root);
   else
     return constant;

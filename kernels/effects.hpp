@@ -4,10 +4,12 @@
 
 namespace grandamp::kernels {
 
-enum class Damping { none, tsuji, linear };
+/// Without tension: a contact only pushes, the damping may not pull at its end.
+enum class Damping { none, tsuji, linear, tsuji_without_tension, linear_without_tension };
 
-/// Coulomb friction needs the granules' spin to know the slip, unless the scene leaves rotation out.
-enum class Friction { none, coulomb_without_rotation, coulomb };
+/// Friction needs the granules' spin to know the slip, unless the scene leaves rotation out. spring: an elastic contact
+/// point that slides when it must, with a memory.
+enum class Friction { none, coulomb_without_rotation, coulomb, spring_without_rotation, spring };
 
 /// How far granules differ: all alike; radii or masses differ; the laws of contact differ by population, too.
 enum class Variety { alike, sizes, materials };
@@ -26,9 +28,15 @@ struct ContactEffects {
   Variety variety = Variety::alike;
   Observation observation = Observation::none;
 
-  constexpr bool rotates() const { return friction == Friction::coulomb; }
+  constexpr bool rotates() const { return friction == Friction::coulomb || friction == Friction::spring; }
   constexpr bool rubs() const { return friction != Friction::none; }
+  constexpr bool remembers() const {
+    return friction == Friction::spring || friction == Friction::spring_without_rotation;
+  }
   constexpr bool damped() const { return damping != Damping::none; }
+  constexpr bool only_pushes() const {
+    return damping == Damping::tsuji_without_tension || damping == Damping::linear_without_tension;
+  }
   constexpr bool ledger() const {
     return observation == Observation::ledger || observation == Observation::ledger_and_energies;
   }

@@ -12,15 +12,36 @@
 
 namespace grandamp::kernels {
 
-inline constexpr int contact_sets = 27; ///< damping x friction x variety
+inline constexpr int contact_sets = 75; ///< damping x friction x variety
 inline constexpr int motion_sets = 8;   ///< integration x rotates x accelerated
 
 constexpr int contact_set(ContactEffects e) {
-  return (static_cast<int>(e.damping) * 3 + static_cast<int>(e.friction)) * 3 + static_cast<int>(e.variety);
+  return (static_cast<int>(e.damping) * 5 + static_cast<int>(e.friction)) * 3 + static_cast<int>(e.variety);
 }
 constexpr ContactEffects contact_effects(int set, Observation observation) {
-  return {static_cast<Damping>(set / 9), static_cast<Friction>(set / 3 % 3), static_cast<Variety>(set % 3),
+  return {static_cast<Damping>(set / 15), static_cast<Friction>(set / 3 % 5), static_cast<Variety>(set % 3),
           observation};
+}
+
+// A kernel for granules of all kinds serves those that are alike, too. Laws that few scenes call for have no kernels of
+// their own for each variety: the build would take twice as long.
+
+constexpr bool rare(ContactEffects e) {
+  if (e.damping == Damping::linear_without_tension || e.friction == Friction::spring_without_rotation) return true;
+  if (e.only_pushes()) return e.friction == Friction::none || e.friction == Friction::coulomb_without_rotation;
+  return e.remembers() && !e.damped();
+}
+/// The kernel that serves pairs with these effects.
+constexpr ContactEffects pair_effects(ContactEffects e) {
+  const bool middle = e.variety == Variety::sizes && (e.only_pushes() || e.remembers());
+  if (rare(e) || middle) e.variety = Variety::materials;
+  return e;
+}
+/// Of walls: these kernels do not gain by granules that are alike.
+constexpr ContactEffects wall_effects(ContactEffects e) {
+  e.variety = rare(e) || e.only_pushes() || e.remembers() || e.variety == Variety::materials ? Variety::materials
+                                                                                             : Variety::sizes;
+  return e;
 }
 constexpr int motion_set(MotionEffects e) {
   return static_cast<int>(e.integration) * 4 + (e.rotates ? 2 : 0) + (e.accelerated ? 1 : 0);
@@ -40,9 +61,9 @@ struct KernelTable {
 template <class S, Observation observation> struct Instantiate {
   template <int... contact, int... motion>
   static constexpr KernelTable table(std::integer_sequence<int, contact...>, std::integer_sequence<int, motion...>) {
-    return {{pair_kernel<S, contact_effects(contact, observation)>...},
-            {wall_kernel<S, contact_effects(contact, observation), Surface::plane>...},
-            {wall_kernel<S, contact_effects(contact, observation), Surface::side>...},
+    return {{pair_kernel<S, pair_effects(contact_effects(contact, observation))>...},
+            {wall_kernel<S, wall_effects(contact_effects(contact, observation)), Surface::plane>...},
+            {wall_kernel<S, wall_effects(contact_effects(contact, observation)), Surface::side>...},
             {motion_kernel<S, motion_effects(motion, observation)>...}};
   }
   static constexpr KernelTable table() {

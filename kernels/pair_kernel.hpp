@@ -20,6 +20,50 @@ template <class S> GRANDAMP_INLINE LawVectors<S> common_law(const LawRow& law) {
   return {S::broadcast(law.stiffness), S::broadcast(law.damping), S::broadcast(law.friction)};
 }
 
+template <class S, class Index>
+GRANDAMP_INLINE SpringLawVectors<S> gathered_laws(const SpringLawRow* laws, Index index) {
+  typename S::Row rows[S::width];
+  for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(&laws[index(lane)].stiffness);
+  SpringLawVectors<S> law;
+  typename S::Vector unused, neither;
+  S::columns(rows, law.stiffness, law.damping, unused, neither);
+  return law;
+}
+
+template <class S> GRANDAMP_INLINE SpringLawVectors<S> common_law(const SpringLawRow& law) {
+  return {S::broadcast(law.stiffness), S::broadcast(law.damping)};
+}
+
+/// The springs of these slots; zero where there was no touch in the step before.
+template <class S> GRANDAMP_INLINE Spring<S> remembered(const SpringArguments& a, const std::uint32_t* slots) {
+  typename S::Row rows[S::width];
+  for (int lane = 0; lane < S::width; ++lane) {
+    const std::uint32_t slot = slots[lane];
+    rows[lane] = a.touched[slot] == a.before ? S::row_load(a.rows[slot].force) : S::row_broadcast(0.0);
+  }
+  Spring<S> spring;
+  S::columns(rows, spring.fx, spring.fy, spring.fz, spring.root);
+  return spring;
+}
+
+template <class S>
+GRANDAMP_INLINE void remember(const SpringArguments& a, const std::uint32_t* slots, unsigned lanes,
+                              const Spring<S>& spring) {
+  typename S::Row rows[S::width];
+  S::rows(spring.fx, spring.fy, spring.fz, spring.root, rows);
+  for (unsigned lane = 0; lane < lanes; ++lane) {
+    S::row_store(a.rows[slots[lane]].force, rows[lane]);
+    a.touched[slots[lane]] = a.now;
+  }
+}
+
+/// Moves the marked ones of the places first ... first + width - 1 together.
+template <class S> GRANDAMP_INLINE void select_slots(std::size_t first, unsigned mask, std::uint32_t* to) {
+  std::uint32_t here[S::width];
+  for (std::uint32_t lane = 0; lane < S::width; ++lane) here[lane] = static_cast<std::uint32_t>(first) + lane;
+  S::select(here, mask, to);
+}
+
 /// Adds the lanes' elastic energy in list order, whatever the lane count.
 template <class S> GRANDAMP_INLINE void add_in_order(typename S::Vector v, unsigned lanes, double& sum) {
   double values[S::width];
@@ -68,7 +112,10 @@ template <class S, ContactEffects E> struct PairLoop {
       Vector x, y, z, radii;
       difference(pairs + k, x, y, z, radii);
       const Vector square = S::fma(z, z, S::fma(y, y, x * x));
-      n += S::select(pairs + k, S::less(square, radii * radii), a.touching + n);
+      const unsigned mask = S::less(square, radii * radii);
+      if constexpr (E.remembers())
+        select_slots<S>(static_cast<std::size_t>(pairs - a.pairs) + k, mask, a.springs.slots + n);
+      n += S::select(pairs + k, mask, a.touching + n);
     }
     return n;
   }
@@ -124,13 +171,47 @@ template <class S, ContactEffects E> struct PairLoop {
     else
       law = common_law<S>(a.law);
 
-    const ContactForces<S> f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap));
+    ContactForces<S> f;
+    if constexpr (E.remembers()) {
+      const std::uint32_t* slots = a.springs.slots + (pairs - a.touching);
+      ContactMemory<S> memory = recall(pairs, slots);
+      f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), &memory);
+      remember<S>(a.springs, slots, lanes, memory.spring);
+      if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
+    } else
+      f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap));
     max_closing = S::max(max_closing, f.closing);
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);
       result.contacts += lanes;
     }
     add_rows(pairs, lanes, c, f);
+  }
+
+  ContactMemory<S> recall(const CandidatePair* pairs, const std::uint32_t* slots) const {
+    ContactMemory<S> memory;
+    memory.spring = remembered<S>(a.springs, slots);
+    memory.time_step = S::broadcast(a.springs.time_step);
+    if constexpr (E.variety == Variety::materials)
+      memory.law = gathered_laws<S>(a.springs.laws, [&](int lane) {
+        return a.granules.population[pairs[lane].first] * a.populations + a.granules.population[pairs[lane].second];
+      });
+    else
+      memory.law = common_law<S>(a.springs.law);
+    const MotionRow* motion = a.granules.motion;
+    memory.moved_otherwise = motion != a.granules.predicted;
+    if (memory.moved_otherwise) {
+      Row rows[width], spins[width];
+      for (int lane = 0; lane < width; ++lane) {
+        const MotionRow &i = motion[pairs[lane].first], &j = motion[pairs[lane].second];
+        rows[lane] = S::row_load(i.velocity) - S::row_load(j.velocity);
+        spins[lane] = S::row_load(i.surface_spin) + S::row_load(j.surface_spin);
+      }
+      Vector unused;
+      S::columns(rows, memory.mx, memory.my, memory.mz, unused);
+      S::columns(spins, memory.wx, memory.wy, memory.wz, unused);
+    }
+    return memory;
   }
 
   void add_rows(const CandidatePair* pairs, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
@@ -197,6 +278,8 @@ template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, Co
     const std::size_t n = loop.touching(a.pairs + begin, left < pair_chunk ? left : pair_chunk);
     const CandidatePair nobody{a.granules.ghost, a.granules.ghost + 1};
     for (unsigned lane = 0; lane < list_padding; ++lane) a.touching[n + lane] = nobody;
+    if constexpr (E.remembers())
+      for (unsigned lane = 0; lane < list_padding; ++lane) a.springs.slots[n + lane] = 0;
     for (std::size_t k = 0; k < n; k += S::width)
       loop.contacts(a.touching + k, static_cast<unsigned>(n - k < S::width ? n - k : S::width), result);
   }

@@ -31,9 +31,26 @@ Vector slip_velocity(const Vector& relative_velocity, const Vector& rolling, con
   return relative_velocity - dot(relative_velocity, normal) * normal + cross(rolling, normal);
 }
 
+/// The spring's new force: turned with the contact, eased with the overlap, loaded by the slip `drift`, held by the
+/// slider.
+Vector spring_force(const Contact& contact, const Spring& before, const Vector& drift, double stiffness, double most,
+                    double step) {
+  Vector force = before.force - dot(before.force, contact.normal) * contact.normal;
+  const double turned = length(force);
+  if (turned > 0.0) force = (length(before.force) / turned) * force;
+  double time = step;
+  if (before.overlap > 0.0)
+    force = std::sqrt(std::min(1.0, contact.overlap / before.overlap)) * force;
+  else if (contact.approach * step > contact.overlap)
+    time = contact.overlap / contact.approach; // in touch for a part of the step only
+  force = force - (stiffness * std::sqrt(contact.overlap) * time) * drift;
+  const double size = length(force);
+  return size > most ? (most / size) * force : force;
+}
+
 /// The laws, once overlap, normal, approach, slip and arms are known.
 void apply_laws(Contact& contact, double reduced_radius, double damping_mass, double slip_mass, const Law& law,
-                double step) {
+                double step, const Spring& before, const Vector& drift) {
   const double stiffness = law.stiffness_coefficient * std::sqrt(reduced_radius); // k_n, Eqs. (4), (5)
   contact.spring = stiffness * std::pow(contact.overlap, 1.5);                    // Eq. (2)
   contact.elastic_energy = 0.4 * stiffness * std::pow(contact.overlap, 2.5);
@@ -42,15 +59,27 @@ void apply_laws(Contact& contact, double reduced_radius, double damping_mass, do
         law.alpha * std::sqrt(damping_mass * stiffness) * std::pow(contact.overlap, 0.25) * contact.approach;
   else if (law.damping == Damping::linear)
     contact.damping = law.normal_damping * contact.approach;
+  if (!law.tension) contact.damping = std::max(contact.damping, -contact.spring);
   const double normal_force = contact.spring + contact.damping;
   contact.force_i = -normal_force * contact.normal;
 
   const double slip_speed = length(contact.slip);
-  if (!law.coulomb || slip_speed == 0.0) return;
-  const double tangential_mass = law.rotation ? 2.0 / 7.0 * slip_mass : slip_mass;
   const double sliding = law.friction * std::abs(normal_force); // Eq. (7)
-  const double bound = friction_cap * tangential_mass * slip_speed / step;
-  contact.friction = -(std::min(sliding, bound) / slip_speed) * contact.slip;
+  if (law.spring) {
+    const double tangential = law.tangential_stiffness_coefficient * std::sqrt(reduced_radius);
+    contact.memory = {spring_force(contact, before, drift, tangential, sliding, step), contact.overlap};
+    const double stored = dot(contact.memory.force, contact.memory.force);
+    if (stored > 0.0) contact.spring_energy = 0.5 * stored / (tangential * std::sqrt(contact.overlap));
+    contact.friction = contact.memory.force - law.tangential_damping * contact.slip;
+    const double size = length(contact.friction);
+    if (size > sliding) contact.friction = (sliding / size) * contact.friction;
+  } else if (law.coulomb && slip_speed > 0.0) {
+    const double tangential_mass = law.rotation ? 2.0 / 7.0 * slip_mass : slip_mass;
+    const double bound = friction_cap * tangential_mass * slip_speed / step;
+    contact.friction = -(std::min(sliding, bound) / slip_speed) * contact.slip;
+  } else {
+    return;
+  }
   contact.force_i = contact.force_i + contact.friction;
   if (!law.rotation) return;
   const Vector turning = cross(contact.normal, contact.friction);
@@ -70,7 +99,8 @@ Dissipation dissipation(const Contact& contact, const Vector& relative_velocity,
 
 } // namespace
 
-Contact pair_contact(const Granule& i, const Granule& j, const Law& law, double step) {
+Contact pair_contact(const Granule& i, const Granule& j, const Law& law, double step, const Spring& before,
+                     const Arrival* arrival) {
   Contact contact;
   const Vector line = j.position - i.position;
   const double distance = length(line);
@@ -86,12 +116,17 @@ Contact pair_contact(const Granule& i, const Granule& j, const Law& law, double 
   contact.approach = dot(relative_velocity, contact.normal);
   contact.slip = slip_velocity(relative_velocity, rolling_of(contact, i.spin, j.spin, law), contact.normal);
   const double effective_mass = i.mass * j.mass / (i.mass + j.mass);
-  apply_laws(contact, i.radius * j.radius / (i.radius + j.radius), effective_mass, effective_mass, law, step);
+  Vector drift = contact.slip;
+  if (arrival)
+    drift = slip_velocity(arrival->velocity_i - arrival->velocity_j,
+                          rolling_of(contact, arrival->spin_i, arrival->spin_j, law), contact.normal);
+  apply_laws(contact, i.radius * j.radius / (i.radius + j.radius), effective_mass, effective_mass, law, step, before,
+             drift);
   return contact;
 }
 
 Contact wall_contact(const Granule& granule, double distance, const Vector& outward, const Law& law, double step,
-                     double damping_mass, double slip_mass) {
+                     double damping_mass, double slip_mass, const Spring& before, const Arrival* arrival) {
   Contact contact;
   const double overlap = granule.radius - distance;
   if (!(overlap > 0.0)) return contact;
@@ -102,7 +137,10 @@ Contact wall_contact(const Granule& granule, double distance, const Vector& outw
   contact.arm_i = granule.radius - overlap;
   contact.approach = dot(granule.velocity, outward);
   contact.slip = slip_velocity(granule.velocity, rolling_of(contact, granule.spin, {}, law), outward);
-  apply_laws(contact, granule.radius, damping_mass, slip_mass, law, step);
+  Vector drift = contact.slip;
+  if (arrival)
+    drift = slip_velocity(arrival->velocity_i, rolling_of(contact, arrival->spin_i, {}, law), contact.normal);
+  apply_laws(contact, granule.radius, damping_mass, slip_mass, law, step, before, drift);
   return contact;
 }
 

@@ -18,8 +18,23 @@ struct Law {
   double normal_damping = 0.0;        ///< linear damping, N s/m
   double friction = 0.0;              ///< mu
   Damping damping = Damping::none;
-  bool coulomb = false;  ///< Coulomb friction, capped
-  bool rotation = false; ///< spins take part in the slip and receive torques
+  bool tension = true;                           ///< the damping may pull at the end of a contact
+  bool coulomb = false;                          ///< Coulomb friction, capped
+  bool spring = false;                           ///< friction of spring, dashpot and slider
+  bool rotation = false;                         ///< spins take part in the slip and receive torques
+  double tangential_stiffness_coefficient = 0.0; ///< C_t in k_t = C_t sqrt(R), N/m^2
+  double tangential_damping = 0.0;               ///< c_t, N s/m
+};
+
+/// What a contact remembers of its tangential spring; as it is here, a fresh contact.
+struct Spring {
+  Vector force{};       ///< on i, N
+  double overlap = 0.0; ///< when it had that force, m
+};
+
+/// Velocities (m/s) and spins (rad/s) that brought two granules to where they are, if they are not the granules' own.
+struct Arrival {
+  Vector velocity_i{}, spin_i{}, velocity_j{}, spin_j{};
 };
 
 /// A granule; a sphere with the moment of inertia 2/5 m r^2.
@@ -43,6 +58,8 @@ struct Contact {
   double spring = 0.0;         ///< k_n d^1.5, N
   double damping = 0.0;        ///< D_n, N
   Vector friction{};           ///< f_t on i, N
+  Spring memory;               ///< of the tangential spring, for the next step
+  double spring_energy = 0.0;  ///< in the tangential spring, J
   Vector force_i{};            ///< on i, N; j (or the wall) gets the opposite
   Vector torque_i{};           ///< N m
   Vector torque_j{};           ///< N m
@@ -52,20 +69,23 @@ struct Contact {
 /// Power lost in a contact, W, losses positive.
 struct Dissipation {
   double normal = 0.0;   ///< D_n d'
-  double friction = 0.0; ///< -f_t . v_t
+  double friction = 0.0; ///< -f_t . v_t; what a tangential spring stores included
 };
 
 /// The share of m_t |v_t| / dt that one contact's friction may take in a step.
 inline constexpr double friction_cap = 0.2;
 
-/// Fang et al. 2007, Eqs. (2), (4), (6), (7). `step` (s) bounds the friction: it cannot reverse the slip.
-Contact pair_contact(const Granule& i, const Granule& j, const Law& law, double step);
+/// Fang et al. 2007, Eqs. (2), (4), (6), (7). `step` (s) bounds the friction: it cannot reverse the slip. `before` is
+/// what the contact remembered a step ago.
+Contact pair_contact(const Granule& i, const Granule& j, const Law& law, double step, const Spring& before = {},
+                     const Arrival* arrival = nullptr);
 
 /// A plane (or the tangent plane of a curved wall) at `distance` from the granule's centre, `outward` pointing from the
 /// granule to it. The granule's velocity is relative to the wall. `damping_mass` and `slip_mass` are the effective
 /// masses (kg) along and across the normal: the granule's own at a wall that does not give way.
 Contact wall_contact(const Granule& granule, double distance, const Vector& outward, const Law& law, double step,
-                     double damping_mass, double slip_mass);
+                     double damping_mass, double slip_mass, const Spring& before = {},
+                     const Arrival* arrival = nullptr);
 
 /// Losses of a contact's damping and friction at velocities other than those that gave the forces (the mean over the
 /// step, for a ledger that closes).

@@ -33,6 +33,13 @@ struct alignas(32) DampingRow {
   double unused;
 };
 
+/// The tangential spring of a contact in touch: its force on the first granule (N), and sqrt(R overlap) (m) at the
+/// step of `touched`.
+struct alignas(32) SpringRow {
+  double force[3];
+  double root;
+};
+
 /// Two sorted indices closer than their radii and the skin; first < second.
 struct alignas(8) CandidatePair {
   std::uint32_t first;

@@ -55,6 +55,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       unsigned mask = S::less(S::broadcast(0.0), d);
       const std::size_t left = a.count - k;
       if (left < width) mask &= (1U << left) - 1U; // the padding touches nothing
+      if constexpr (E.remembers()) select_slots<S>(k, mask, a.springs.slots + n);
       n += S::select(a.list + k, mask, a.touching + n);
     }
     return n;
@@ -85,7 +86,15 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     else
       law = common_law<S>(a.law);
 
-    const ContactForces<S> f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap));
+    ContactForces<S> f;
+    if constexpr (E.remembers()) {
+      const std::uint32_t* slots = a.springs.slots + (list - a.touching);
+      ContactMemory<S> memory = recall(list, slots);
+      f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), &memory);
+      remember<S>(a.springs, slots, lanes, memory.spring);
+      if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
+    } else
+      f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap));
     max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
     max_closing = S::max(max_closing, f.closing);
     if constexpr (E.energies()) {
@@ -93,6 +102,29 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       result.contacts += lanes;
     }
     add_rows(list, lanes, c, f);
+  }
+
+  ContactMemory<S> recall(const std::uint32_t* list, const std::uint32_t* slots) const {
+    ContactMemory<S> memory;
+    memory.spring = remembered<S>(a.springs, slots);
+    memory.time_step = S::broadcast(a.springs.time_step);
+    if constexpr (E.variety == Variety::materials)
+      memory.law = gathered_laws<S>(a.springs.laws, [&](int lane) { return a.granules.population[list[lane]]; });
+    else
+      memory.law = common_law<S>(a.springs.law);
+    const MotionRow* motion = a.granules.motion;
+    memory.moved_otherwise = motion != a.granules.predicted;
+    if (memory.moved_otherwise) {
+      Row rows[width], spins[width];
+      for (int lane = 0; lane < width; ++lane) {
+        rows[lane] = S::row_load(motion[list[lane]].velocity);
+        spins[lane] = S::row_load(motion[list[lane]].surface_spin);
+      }
+      Vector unused;
+      S::columns(rows, memory.mx, memory.my, memory.mz, unused);
+      S::columns(spins, memory.wx, memory.wy, memory.wz, unused);
+    }
+    return memory;
   }
 
   void add_rows(const std::uint32_t* list, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
@@ -133,6 +165,8 @@ template <class S, ContactEffects E, Surface shape> void wall_kernel(const WallA
   // The last, partly filled vector repeats its last contact in the lanes that are not used.
   if (n == 0) return;
   for (std::size_t k = n; k % list_padding != 0; ++k) a.touching[k] = a.touching[n - 1];
+  if constexpr (E.remembers())
+    for (std::size_t k = n; k % list_padding != 0; ++k) a.springs.slots[k] = a.springs.slots[n - 1];
   for (std::size_t k = 0; k < n; k += S::width)
     loop.contacts(a.touching + k, static_cast<unsigned>(n - k < S::width ? n - k : S::width), result);
   result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);

@@ -25,6 +25,13 @@ double effective_modulus(const Elasticity& i, const Elasticity& j) {
   return 1.0 / ((1.0 - i.poisson * i.poisson) / i.young + (1.0 - j.poisson * j.poisson) / j.young);
 }
 
+/// 1/G* = (2 - nu_i)/G_i + (2 - nu_j)/G_j with G = E / (2 (1 + nu)): Mindlin's contact that does not slip has the
+/// tangential stiffness 8 G* sqrt(R d).
+double effective_shear_modulus(const Elasticity& i, const Elasticity& j) {
+  const auto compliance = [](const Elasticity& of) { return 2.0 * (2.0 - of.poisson) * (1.0 + of.poisson) / of.young; };
+  return 1.0 / (compliance(i) + compliance(j));
+}
+
 /// Constants of a contact and the table that gave them.
 struct Given {
   const ContactConstants* constants;
@@ -62,6 +69,17 @@ public:
     return 4.0 / 3.0 * effective_modulus(material(a), wall_material(given));
   }
 
+  /// C_t, scaled with the radii as the stiffness is; from moduli it is Mindlin's 8 G*.
+  double tangential_of_granules(const Given& given, std::size_t a, std::size_t b) {
+    if (given.constants->stiffness) return tangential(given) * std::sqrt(2.0 / reference(given));
+    return 8.0 * effective_shear_modulus(material(a), material(b));
+  }
+
+  double tangential_of_wall(const Given& given, std::size_t a) {
+    if (given.constants->stiffness) return tangential(given) / std::sqrt(reference(given));
+    return 8.0 * effective_shear_modulus(material(a), wall_material(given));
+  }
+
   void losses(const Given& of, ContactLaw& law) {
     const ContactConstants& given = *of.constants;
     const std::string& table = of.table;
@@ -73,9 +91,13 @@ public:
         law.alpha =
             alpha_of(require(given.restitution, table + ".restitution", "needed by damping = \"tsuji\" (or alpha)"),
                      table + ".restitution");
-      // At alpha = sqrt(5) the restitution is zero: beyond, granules stick together as no formula of the model
-      // foresees.
-      check(table + ".alpha", law.alpha, law.alpha >= 0.0 && law.alpha < std::sqrt(5.0), "at least 0 and below 2.236");
+      // At alpha = sqrt(5) the restitution is zero: beyond, granules that may pull stick together as no formula of the
+      // model foresees.
+      if (scene_.contact.tension)
+        check(table + ".alpha", law.alpha, law.alpha >= 0.0 && law.alpha < std::sqrt(5.0),
+              "at least 0 and below 2.236");
+      else
+        check(table + ".alpha", law.alpha, law.alpha >= 0.0, "at least 0");
       break;
     case NormalDamping::linear:
       law.normal_damping = require(given.normal_damping, table + ".normal_damping", "needed by damping = \"linear\"");
@@ -84,16 +106,23 @@ public:
     case NormalDamping::none:
       break;
     }
-    if (scene_.contact.friction == FrictionLaw::coulomb) {
-      law.friction = require(given.friction, table + ".friction", "needed by friction = \"coulomb\"");
+    if (scene_.contact.friction != FrictionLaw::none) {
+      const bool spring = scene_.contact.friction == FrictionLaw::spring;
+      law.friction = require(given.friction, table + ".friction",
+                             fmt::format("needed by friction = \"{}\"", spring ? "spring" : "coulomb"));
       check(table + ".friction", law.friction, law.friction >= 0.0, "at least 0");
+    }
+    if (scene_.contact.friction == FrictionLaw::spring) {
+      law.tangential_damping = given.tangential_damping.value_or(0.0);
+      check(table + ".tangential_damping", law.tangential_damping, law.tangential_damping >= 0.0, "at least 0");
     }
   }
 
   double alpha_of(double restitution, const std::string& key) {
     const bool allowed = restitution > 0.0 && restitution <= 1.0;
     check(key, restitution, allowed, "above 0, at most 1");
-    return allowed ? tsuji_alpha(restitution) : 0.0;
+    if (!allowed) return 0.0;
+    return scene_.contact.tension ? tsuji_alpha(restitution) : tsuji_alpha_without_tension(restitution);
   }
 
   void check(const std::string& key, double value, bool allowed, const std::string& range) {
@@ -154,6 +183,14 @@ private:
     return radius;
   }
 
+  double tangential(const Given& given) {
+    const std::string key = given.table + ".tangential_stiffness";
+    const double stiffness =
+        require(given.constants->tangential_stiffness, key, "needed by friction = \"spring\" beside a stiffness");
+    check(key, stiffness, stiffness >= 0.0, "at least 0");
+    return stiffness;
+  }
+
   Elasticity wall_material(const Given& given) {
     const std::string why = fmt::format("needed, as {}.stiffness is left out", given.table);
     const Elasticity wall{require(given.constants->young, given.table + ".young", why),
@@ -190,11 +227,36 @@ double tsuji_alpha(double restitution) {
   return -std::sqrt(5.0) * logarithm / std::hypot(logarithm, std::numbers::pi) + 0.0; // + 0.0: not -0 for e = 1
 }
 
+double tsuji_alpha_without_tension(double restitution) {
+  if (!(restitution > 0.0 && restitution <= 1.0))
+    throw SceneError(Problem{"restitution", fmt::format("{}", restitution), "out of range", "above 0, at most 1"});
+  // With s = (2/sqrt 5) d^(5/4) in units of the contact, Eq. (6) is s'' + 2 zeta s' + s = 0, zeta = alpha / sqrt(5), in
+  // the plane of speed and s. It starts at s = 0 and ends where the force is none, s'' = 0, at the speed
+  //   e = exp(-tan(psi) (pi - 2 psi)), zeta = sin(psi) <= 1; e = exp(-2 eta / tanh(eta)), zeta = cosh(eta) >= 1;
+  // both fall with zeta, through exp(-2) where they meet.
+  const double wanted = -std::log(restitution);
+  if (wanted == 0.0) return 0.0;
+  const auto bisected = [wanted](double low, double high, const auto& exponent) {
+    for (int k = 0; k < 200; ++k) {
+      const double middle = 0.5 * (low + high);
+      (exponent(middle) < wanted ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  };
+  const double zeta =
+      wanted < 2.0
+          ? std::sin(bisected(0.0, 0.5 * std::numbers::pi,
+                              [](double psi) { return std::tan(psi) * (std::numbers::pi - 2.0 * psi); }))
+          : std::cosh(bisected(0.0, wanted, [](double eta) { return eta > 0.0 ? 2.0 * eta / std::tanh(eta) : 2.0; }));
+  return std::sqrt(5.0) * zeta;
+}
+
 ContactTable make_contact_table(const Scene& scene) {
   const std::size_t populations = scene.populations.size();
   ContactTable table{populations, std::vector<ContactLaw>(populations * populations),
                      std::vector<ContactLaw>(populations)};
   Constants constants(scene);
+  const bool springs = scene.contact.friction == FrictionLaw::spring;
   std::size_t granules = 0;
   for (const Population& population : scene.populations) granules += population.count;
   for (std::size_t a = 0; a < populations; ++a) {
@@ -207,11 +269,13 @@ ContactTable make_contact_table(const Scene& scene) {
         const Given given = constants.of_granules(a, b);
         ContactLaw& law = table.granule[a * populations + b];
         law.stiffness_coefficient = constants.stiffness_of_granules(given, a, b);
+        if (springs) law.tangential_stiffness_coefficient = constants.tangential_of_granules(given, a, b);
         constants.losses(given, law);
       }
     }
     if (wall) {
       table.wall[a].stiffness_coefficient = constants.stiffness_of_wall(*wall, a);
+      if (springs) table.wall[a].tangential_stiffness_coefficient = constants.tangential_of_wall(*wall, a);
       constants.losses(*wall, table.wall[a]);
     } else {
       // Left out: the flat wall of the granules' own material. E* is then that of two such granules, and so is C.

@@ -45,7 +45,9 @@ bool several_laws(const Scene& scene, const ContactTable& contacts) {
 void choose_effects(Plan& plan, const ContactTable& contacts) {
   const Scene& scene = plan.scene;
   const bool granules = plan.granules > 0;
-  const bool friction = granules && scene.contact.friction == FrictionLaw::coulomb;
+  const bool friction = granules && scene.contact.friction != FrictionLaw::none;
+  const bool spring = granules && scene.contact.friction == FrictionLaw::spring;
+  const bool damped = granules && scene.contact.damping != NormalDamping::none;
   const bool box = scene.enclosure.shape == EnclosureShape::box;
   const auto effect = [&](const char* name, bool chosen) {
     (chosen ? plan.effects : plan.effects_left_out).emplace_back(name);
@@ -53,8 +55,9 @@ void choose_effects(Plan& plan, const ContactTable& contacts) {
   effect("hertz", granules);
   effect("tsuji", granules && scene.contact.damping == NormalDamping::tsuji);
   effect("linear", granules && scene.contact.damping == NormalDamping::linear);
-  effect("coulomb", friction);
-  effect("spring", false);
+  effect("only_pushes", damped && !scene.contact.tension);
+  effect("coulomb", friction && !spring);
+  effect("spring", spring);
   effect("rotation", friction && scene.contact.rotation);
   effect("polydisperse", several_sizes(scene));
   effect("materials", several_laws(scene, contacts));
@@ -93,13 +96,14 @@ void choose_list(Plan& plan) {
 std::size_t estimate_memory(const Plan& plan) {
   constexpr double bytes_per_granule = 32.0 + 64.0 + 64.0 + 8.0 + 36.0;
   if (plan.granules == 0) return 0;
+  const double bytes_per_candidate = plan.scene.contact.friction == FrictionLaw::spring ? 8.0 + 36.0 : 8.0;
   // Half of the neighbours whose centres are within a diameter and the skin, at this solid fraction.
   const double reach = 1.0 + 0.5 * plan.skin / plan.largest_radius;
   const double candidates =
       std::min(0.5 * static_cast<double>(plan.granules), 4.0 * plan.damper.fill_fraction * reach * reach * reach);
   const double cells = static_cast<double>(plan.grid[0]) * plan.grid[1] * plan.grid[2];
-  return static_cast<std::size_t>(static_cast<double>(plan.granules) * (bytes_per_granule + 8.0 * candidates) +
-                                  4.0 * cells);
+  return static_cast<std::size_t>(
+      static_cast<double>(plan.granules) * (bytes_per_granule + bytes_per_candidate * candidates) + 4.0 * cells);
 }
 
 void note(Plan& plan, std::string key, std::string message) {

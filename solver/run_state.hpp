@@ -52,6 +52,8 @@ struct RunState {
   std::vector<double> predicted_surface_spin;
 
   ListState list;
+  std::vector<std::uint32_t> spring_contacts;
+  std::vector<double> springs;
   std::vector<double> built_at;
   double skin = 0.0;
   std::int64_t list_age = 0;
@@ -143,6 +145,10 @@ template <class State, class Field> void visit_fields(State& s, Field&& field) {
   field(FieldInfo{"list/pairs", "1", "two rows each", 2}, s.list.pairs);
   field(FieldInfo{"list/wall_counts", "1", "rows near each wall, by segment"}, s.list.wall_counts);
   field(FieldInfo{"list/wall_rows", "1", "rows near the walls"}, s.list.wall_rows);
+  field(FieldInfo{"springs/contacts", "1", "loaded tangential springs: a granule's id, and its partner's; walls follow",
+                  2},
+        s.spring_contacts);
+  field(FieldInfo{"springs/force", "N, m", "on the granule, at t_(n-1), and sqrt(R overlap) then", 4}, s.springs);
   field(FieldInfo{"list/built_at", "m", "policy displacement: positions at the last build", 3}, s.built_at);
   field(FieldInfo{"list/skin", "m", "in force"}, s.skin);
   field(FieldInfo{"list/age", "1", "steps since the last build"}, s.list_age);

@@ -46,7 +46,7 @@ struct Population {
 enum class PackingKind { settled, random };
 
 enum class NormalDamping { none, tsuji, linear };
-enum class FrictionLaw { none, coulomb };
+enum class FrictionLaw { none, coulomb, spring };
 
 /// [contact.granule] and [contact.wall]: what holds between two granules, or a granule and the enclosure.
 /// Stiffness is either given for `reference_radius`, or comes from `young` and `poisson`.
@@ -57,6 +57,8 @@ struct ContactConstants {
   std::optional<double> alpha;            ///< Tsuji's constant instead of restitution
   std::optional<double> normal_damping;   ///< linear damping, N s/m
   std::optional<double> friction;         ///< mu
+  std::optional<double> tangential_stiffness; ///< k_t of reference_radius, N/m^1.5, spring friction; it goes with stiffness
+  std::optional<double> tangential_damping;   ///< N s/m, spring friction; left out: none
   std::optional<double> young;            ///< of the wall, Pa
   std::optional<double> poisson;          ///< of the wall
 };
@@ -70,6 +72,7 @@ struct PairContact {
 struct Contact {
   NormalDamping damping = NormalDamping::tsuji;
   FrictionLaw friction = FrictionLaw::coulomb;
+  bool tension = true; ///< the damping may pull at the end of a contact
   bool rotation = true;
   ContactConstants granule;
   std::optional<ContactConstants> wall; ///< left out: as the granules', the wall of their material

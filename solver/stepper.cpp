@@ -37,6 +37,9 @@ Ledger Stepper::ledger_at(const StepRecord& record) const {
   const Ledger half = first_half(record);
   if (step_number_ > 0)
     for (const auto term : ledger_terms) sum.*term += half.*term;
+  // What friction took since t = 0, less what its springs would give back.
+  sum.friction_granule -= record.spring_granule;
+  sum.friction_wall -= record.spring_wall;
   return sum;
 }
 
@@ -65,6 +68,7 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean) {
   const EnclosureState enclosure = enclosure_;
   const ListAge age = age_;
   const GuardStatistics guards = guards_;
+  const SpringMemory springs = springs_;
 
   const StepRecord record = advance(energies);
 
@@ -85,6 +89,7 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean) {
   enclosure_ = enclosure;
   age_ = age;
   guards_ = guards;
+  springs_ = springs;
   return record;
 }
 
@@ -131,6 +136,7 @@ double Stepper::wall_forces(const Kernels& kernels) {
         a.surface = walls_[w].surface;
         a.list = segment.walls[w].granules.data();
         a.count = segment.walls[w].count;
+        if (remembers()) a.springs = spring_arguments(s, springs_.of(s).walls[w], 0, wall_spring_laws_);
         (walls_[w].side ? kernels.side : kernels.plane)(a, results_[s].walls);
       }
     });
@@ -173,6 +179,16 @@ kernels::PairArguments Stepper::pair_arguments(Segment& segment) {
   return a;
 }
 
+kernels::SpringArguments Stepper::spring_arguments(std::size_t segment, SpringMemory::Rows& rows, std::size_t first,
+                                                   const std::vector<kernels::SpringLawRow>& laws) {
+  kernels::SpringArguments a = SpringMemory::arguments(rows, springs_.of(segment).slots, first, step_number_);
+  // What is in touch at t = 0 is not loaded yet.
+  a.time_step = step_number_ > 0 ? time_step_ : 0.0;
+  a.law = laws.front();
+  a.laws = laws.data();
+  return a;
+}
+
 void Stepper::boundary_forces(const Kernels& kernels) {
   const double approach = approach_share();
   team_.each(list_.segments().size(), [&](std::size_t s) {
@@ -181,6 +197,7 @@ void Stepper::boundary_forces(const Kernels& kernels) {
     kernels::PairArguments a = pair_arguments(segment);
     a.pairs = segment.boundary.data();
     a.count = segment.boundary_pairs.to_test(approach);
+    if (remembers()) a.springs = spring_arguments(s, springs_.of(s).boundary, 0, pair_spring_laws_);
     timed(profile_, Phase::pairs, s, [&] { kernels.pair(a, results_[s].pairs); });
   });
 }
@@ -202,6 +219,7 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
         touched = touch_rows(motion.granules, touched, segment.blocks[b + 1].front);
       pairs.pairs = segment.inner.data() + block.pairs.first;
       pairs.count = block.pairs.to_test(approach);
+      if (remembers()) pairs.springs = spring_arguments(s, springs_.of(s).inner, block.pairs.first, pair_spring_laws_);
       timed(profile_, Phase::pairs, s, [&] { kernels.pair(pairs, results_[s].pairs); });
       motion.first = block.first;
       motion.last = block.last;
@@ -218,7 +236,9 @@ StepRecord Stepper::collect(double reaction, const EnclosureStep& enclosure) {
   record.dissipated.structural_damping = enclosure.damping_loss;
   double max_speed_squared = 0.0, sum_speed_squared = 0.0;
   for (const SegmentResult& result : results_) {
-    record.elastic += result.walls.elastic + result.pairs.elastic;
+    record.elastic += result.walls.elastic + result.pairs.elastic + result.walls.spring + result.pairs.spring;
+    record.spring_granule += result.pairs.spring;
+    record.spring_wall += result.walls.spring;
     record.contacts += result.walls.contacts + result.pairs.contacts;
     record.kinetic += result.motion.kinetic;
     for (std::size_t k = 0; k < 3; ++k) record.mass_moment[k] += result.motion.mass_moment[k];
@@ -280,6 +300,8 @@ void Stepper::rebuild() {
     if (tuner_.active) skin_ = tuner_.skin;
     build_steps_ += age_.steps;
   }
+  std::vector<LoadedSpring> springs;
+  if (remembers() && age_.built) springs = springs_.loaded(list_, granules_, step_number_ - 1, team_);
   search_.skin = skin_;
   search_.cell_length = std::max(plan_.cell, 2.0 * search_.largest_radius + skin_);
   if (plan_.scene.verlet.policy == ListPolicy::all_pairs)
@@ -289,6 +311,7 @@ void Stepper::rebuild() {
   for (const Segment& segment : list_.segments()) guards_.escaped += static_cast<std::int64_t>(segment.outside.size());
   if (guards_.escaped > 0) throw escaped({plan_, granules_, list_, walls_, step_number_, time_step_}, guards_.escaped);
 
+  if (remembers()) springs_.spread(springs, list_, granules_, step_number_ - 1, team_);
   ++builds_;
   if (granules_.count() > 0) candidates_sum_ += static_cast<double>(list_.candidates()) / granules_.count();
   age_ = {};

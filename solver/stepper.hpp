@@ -14,6 +14,7 @@
 #include "solver/rebuild_policy.hpp"
 #include "solver/run_state.hpp"
 #include "solver/simulation.hpp"
+#include "solver/spring_memory.hpp"
 #include "solver/team.hpp"
 #include "solver/verlet_list.hpp"
 #include "solver/walls.hpp"
@@ -27,12 +28,13 @@ namespace grandamp {
 /// What one step told, about t_n, the instant that it started from.
 struct StepRecord {
   EnclosureStep enclosure;
-  double reaction = 0.0;               ///< N
-  double elastic = 0.0, kinetic = 0.0; ///< J; with energies
-  Vector3 mass_moment{0.0, 0.0, 0.0};  ///< with energies
-  std::int64_t contacts = 0;           ///< with energies
-  Ledger dissipated;                   ///< in this step alone; granules' share with the ledger
-  Ledger until;                        ///< from t = 0 to t_n
+  double reaction = 0.0;                          ///< N
+  double elastic = 0.0, kinetic = 0.0;            ///< J; with energies
+  double spring_granule = 0.0, spring_wall = 0.0; ///< of `elastic`, in tangential springs; with energies
+  Vector3 mass_moment{0.0, 0.0, 0.0};             ///< with energies
+  std::int64_t contacts = 0;                      ///< with energies
+  Ledger dissipated;                              ///< in this step alone; granules' share with the ledger
+  Ledger until;                                   ///< from t = 0 to t_n
 };
 
 class Stepper {
@@ -82,6 +84,7 @@ private:
   void place(const Placement& start);
   void restore_granules(const RunState& state);
   void restore_list(const RunState& state);
+  void restore_springs(const RunState& state);
   std::vector<double> constants() const;
   void choose_kernels();
   void take_half_step_back();
@@ -101,6 +104,10 @@ private:
   Ledger ledger_at(const StepRecord& record) const;
   double approach_share() const; ///< how much nearer two granules may have come since the list, over the skin
   kernels::PairArguments pair_arguments(Segment& segment);
+  bool remembers() const noexcept { return contact_effects_.remembers(); }
+  /// Rows of the springs of a list from its entry `first` on, and their laws.
+  kernels::SpringArguments spring_arguments(std::size_t segment, SpringMemory::Rows& rows, std::size_t first,
+                                            const std::vector<kernels::SpringLawRow>& laws);
 
   const Plan plan_;
   double time_step_;
@@ -115,6 +122,7 @@ private:
   Kernels plain_, with_energies_;
   VerletList::Search search_;
   std::vector<kernels::LawRow> pair_laws_, wall_laws_;
+  std::vector<kernels::SpringLawRow> pair_spring_laws_, wall_spring_laws_;
   double friction_cap_ = 0.0;
   double enclosure_inverse_mass_ = 0.0;
   double friction_inverse_mass_ = 0.0;
@@ -125,6 +133,7 @@ private:
   std::int64_t step_number_ = 0;
   Granules granules_;
   VerletList list_;
+  SpringMemory springs_; ///< spring friction only
   ListAge age_;
   SkinTuner tuner_;
   double skin_ = 0.0;

@@ -20,9 +20,9 @@ namespace {
 kernels::Damping damping_of(const Contact& contact) {
   switch (contact.damping) {
   case NormalDamping::tsuji:
-    return kernels::Damping::tsuji;
+    return contact.tension ? kernels::Damping::tsuji : kernels::Damping::tsuji_without_tension;
   case NormalDamping::linear:
-    return kernels::Damping::linear;
+    return contact.tension ? kernels::Damping::linear : kernels::Damping::linear_without_tension;
   case NormalDamping::none:
     break;
   }
@@ -31,6 +31,8 @@ kernels::Damping damping_of(const Contact& contact) {
 
 kernels::Friction friction_of(const Contact& contact) {
   if (contact.friction == FrictionLaw::none) return kernels::Friction::none;
+  if (contact.friction == FrictionLaw::spring)
+    return contact.rotation ? kernels::Friction::spring : kernels::Friction::spring_without_rotation;
   return contact.rotation ? kernels::Friction::coulomb : kernels::Friction::coulomb_without_rotation;
 }
 
@@ -49,6 +51,15 @@ std::vector<kernels::LawRow> law_rows(const std::vector<ContactLaw>& laws, Norma
   for (const ContactLaw& law : laws)
     rows.push_back({law.stiffness_coefficient, damping == NormalDamping::linear ? law.normal_damping : law.alpha,
                     law.friction, 0.0});
+  if (rows.empty()) rows.push_back({});
+  return rows;
+}
+
+std::vector<kernels::SpringLawRow> spring_law_rows(const std::vector<ContactLaw>& laws) {
+  std::vector<kernels::SpringLawRow> rows;
+  rows.reserve(laws.size());
+  for (const ContactLaw& law : laws)
+    rows.push_back({law.tangential_stiffness_coefficient, law.tangential_damping, {0.0, 0.0}});
   if (rows.empty()) rows.push_back({});
   return rows;
 }
@@ -89,6 +100,8 @@ Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa,
   same_sizes_ = same_sizes;
   pair_laws_ = law_rows(contacts_.granule, contact.damping);
   wall_laws_ = law_rows(contacts_.wall, contact.damping);
+  pair_spring_laws_ = spring_law_rows(contacts_.granule);
+  wall_spring_laws_ = spring_law_rows(contacts_.wall);
   friction_cap_ = friction_cap_share * (contact_effects_.rotates() ? rolling_mass_share : 1.0) / time_step_;
   if (plan_.scene.structure && plan_.granules > 0) {
     enclosure_inverse_mass_ = 1.0 / plan_.scene.structure->mass;
@@ -158,6 +171,7 @@ void Stepper::take_half_step_back() {
   rebuild_if_due();
   results_.assign(list_.segments().size(), {});
   const Kernels& kernels = kernels_for(false);
+  const SpringMemory springs = springs_;
   const double reaction = wall_forces(kernels);
   enclosure_ = motion_.start(reaction);
   const double frame_change = enclosure_.velocity - motion_.initial_velocity();
@@ -171,6 +185,7 @@ void Stepper::take_half_step_back() {
   for (double& component : kick) component *= time_step_;
   boundary_forces(kernels);
   sweep(kernels, kick, {});
+  springs_ = springs;
   granules_.position = std::move(position);
   for (std::uint32_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < 3; ++k) {

@@ -43,6 +43,8 @@ std::vector<double> Stepper::constants() const {
                              plan_.cell,     plan_.skin};
   for (const auto* laws : {&pair_laws_, &wall_laws_})
     for (const kernels::LawRow& law : *laws) values.insert(values.end(), {law.stiffness, law.damping, law.friction});
+  for (const auto* laws : {&pair_spring_laws_, &wall_spring_laws_})
+    for (const kernels::SpringLawRow& law : *laws) values.insert(values.end(), {law.stiffness, law.damping});
   // The enclosure's own motion from a state of its own, at steps far apart: sines and cosines of another mathematics
   // library, or exponentials of another Eigen, show here.
   EnclosureState state{motion_.initial_displacement() + 1e-3, motion_.initial_velocity() + 1e-2};
@@ -76,6 +78,14 @@ void Stepper::save(RunState& s) const {
   s.predicted_surface_spin = columns_of(granules_.predicted, count, &MotionRow::surface_spin);
 
   s.list = state_of(list_, count);
+  s.spring_contacts.clear();
+  s.springs.clear();
+  if (remembers() && age_.built)
+    for (const LoadedSpring& spring : springs_.loaded(list_, granules_, step_number_ - 1, team_)) {
+      s.spring_contacts.insert(s.spring_contacts.end(), {spring.id, spring.partner});
+      s.springs.insert(s.springs.end(), std::begin(spring.row.force), std::end(spring.row.force));
+      s.springs.push_back(spring.row.root);
+    }
   s.built_at = built_at_.size() > 0 ? places_of(built_at_, count) : std::vector<double>{};
   s.skin = skin_;
   s.list_age = age_.steps;
@@ -153,8 +163,23 @@ void Stepper::restore_granules(const RunState& s) {
   granules_.set_ghosts();
 }
 
+void Stepper::restore_springs(const RunState& s) {
+  std::vector<LoadedSpring> springs(s.spring_contacts.size() / 2);
+  if (s.spring_contacts.size() != 2 * springs.size() || s.springs.size() != 4 * springs.size())
+    throw StateError("springs/contacts and springs/force are of different lengths");
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    springs[k].id = s.spring_contacts[2 * k];
+    springs[k].partner = s.spring_contacts[2 * k + 1];
+    if (springs[k].id >= granules_.count()) throw StateError("springs/contacts holds a granule that is none");
+    std::copy_n(s.springs.begin() + static_cast<std::ptrdiff_t>(4 * k), 3, std::begin(springs[k].row.force));
+    springs[k].row.root = s.springs[4 * k + 3];
+  }
+  springs_.spread(springs, list_, granules_, step_number_ - 1, team_);
+}
+
 void Stepper::restore_list(const RunState& s) {
   restore(list_, s.list, granules_.count(), walls_.size());
+  if (remembers()) restore_springs(s);
   skin_ = s.skin;
   age_ = {s.list_age, s.list_travelled, s.list_farthest, s.list_allowed, s.list_built};
   tuner_.skin = s.tuner_skin;

@@ -84,7 +84,10 @@ double effective_mass_at_wall(const Scene& scene, const GranuleClass& granule, s
 struct StiffestContact {
   double unit_duration = infinity; ///< T_c at 1 m/s, s
   std::string name;
-  double damping_time = infinity; ///< least effective mass over normal damping (linear), s
+  double damping_time = infinity;        ///< least effective mass over normal damping (linear), s
+  double overdamping = 1.0;              ///< largest alpha over that of critical damping, sqrt(5); 1 where it is less
+  double unit_spring_time = infinity;    ///< 1/omega of the stiffest tangential spring at the overlap of 1 m/s, s
+  double spring_damping_time = infinity; ///< least effective mass over tangential damping, s
 };
 
 std::string name_of(const Scene& scene, std::size_t population) {
@@ -103,6 +106,17 @@ StiffestContact stiffest_contact(const Scene& scene, const ContactTable& contact
     }
     if (scene.contact.damping == NormalDamping::linear && law.normal_damping > 0.0)
       stiffest.damping_time = std::min(stiffest.damping_time, mass / law.normal_damping);
+    if (scene.contact.damping == NormalDamping::tsuji)
+      stiffest.overdamping = std::max(stiffest.overdamping, law.alpha / std::sqrt(5.0));
+    const double slip_mass = scene.contact.rotation ? 2.0 / 7.0 * mass : mass;
+    if (law.tangential_stiffness_coefficient > 0.0) {
+      const double normal = law.stiffness_coefficient * std::sqrt(reduced_radius);
+      const double overlap = std::pow(1.25 * mass / normal, 0.4);
+      const double tangential = law.tangential_stiffness_coefficient * std::sqrt(reduced_radius * overlap);
+      stiffest.unit_spring_time = std::min(stiffest.unit_spring_time, std::sqrt(slip_mass / tangential));
+    }
+    if (law.tangential_damping > 0.0)
+      stiffest.spring_damping_time = std::min(stiffest.spring_damping_time, slip_mass / law.tangential_damping);
   };
   const std::vector<GranuleClass> classes = granule_classes(scene);
   for (std::size_t i = 0; i < classes.size(); ++i) {
@@ -226,6 +240,16 @@ TimeStep choose_time_step(const Scene& scene, const ContactTable& contacts) {
   bound(stable, 0.5 * stiffest.damping_time, "the contacts' normal damping is too strong for it");
   bound(chosen, 0.25 * stiffest.damping_time,
         "a quarter of effective mass over normal damping, which is stricter than T_c");
+  // So does Tsuji's, once it is beyond critical, which only contacts without tension can be.
+  bound(stable, stable.step / stiffest.overdamping, "the contacts' normal damping is too strong for it");
+  bound(chosen, chosen.step / stiffest.overdamping, chosen.reason + ", less for damping beyond critical");
+  // One contact's spring bears 2/omega; a granule among twelve half of it.
+  const double spring_time = contact_duration_at(stiffest.unit_spring_time, 1.0, result.impact_speed);
+  bound(stable, spring_time, "the contacts' tangential springs are too stiff for it");
+  bound(chosen, spring_time / 1.1, "1/omega of the stiffest tangential spring, over 1.1, which is stricter than T_c");
+  bound(stable, 0.5 * stiffest.spring_damping_time, "the contacts' tangential damping is too strong for it");
+  bound(chosen, 0.25 * stiffest.spring_damping_time,
+        "a quarter of effective mass over tangential damping, which is stricter than T_c");
   bound(stable, structure.step, structure.reason);
   bound(chosen, structure.step, structure.reason);
   // The reaction is held over a step: steps near half the structure's own period would resonate with the kicks.

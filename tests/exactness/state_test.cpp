@@ -114,6 +114,20 @@ TEST_CASE("a state put back goes on by the same bits: integrators") {
   }
 }
 
+TEST_CASE("a state put back goes on by the same bits: tangential springs") {
+  for (const Integrator integrator : {Integrator::leapfrog, Integrator::verlet}) {
+    Scene scene = damper(100);
+    scene.time.integrator = integrator;
+    scene.contact.friction = FrictionLaw::spring;
+    scene.contact.tension = integrator == Integrator::verlet;
+    scene.contact.granule.tangential_stiffness = 0.9e7;
+    scene.contact.wall->tangential_stiffness = 1.1e7;
+    scene.contact.wall->tangential_damping = 0.02;
+    scene.time.step = 5.0e-6;
+    check_cut(scene, 6000, 7, 1, 2);
+  }
+}
+
 TEST_CASE("a state put back goes on by the same bits: list policies, audited") {
   for (const ListPolicy policy : {ListPolicy::guarded, ListPolicy::predicted, ListPolicy::displacement,
                                   ListPolicy::fixed, ListPolicy::none, ListPolicy::all_pairs}) {

@@ -26,7 +26,7 @@ struct Expected {
     }
   };
   std::vector<Sum> force, turn, damping, rubbing;
-  double elastic = 0.0, max_overlap = 0.0, max_closing = 0.0;
+  double elastic = 0.0, spring = 0.0, max_overlap = 0.0, max_closing = 0.0;
   std::int64_t contacts = 0;
   Sum total; ///< on the granules
 
@@ -67,7 +67,17 @@ void check_result(const ContactResult& result, const Expected& expected, Contact
   CHECK(result.max_closing == doctest::Approx(expected.max_closing).epsilon(1.0e-10));
   if (!effects.energies()) return;
   CHECK(result.elastic == doctest::Approx(expected.elastic).epsilon(1.0e-10));
+  CHECK(result.spring == doctest::Approx(expected.spring).epsilon(1.0e-10));
   CHECK(result.contacts == expected.contacts);
+}
+
+/// The memory of one entry of the list after the step.
+void check_memory(const Springs& springs, std::size_t entry, const reference::Contact& contact, double reduced_radius) {
+  CHECK(springs.touched[entry] == Springs::now);
+  const SpringRow& row = springs.rows[entry];
+  for (std::size_t k = 0; k < 3; ++k)
+    CHECK(std::abs(row.force[k] - contact.memory.force[k]) < tolerance * (contact.spring + 1.0));
+  CHECK(row.root == doctest::Approx(std::sqrt(reduced_radius * contact.overlap)).epsilon(1.0e-10));
 }
 
 void add_contact(Expected& expected, const reference::Contact& contact, std::size_t i, double radius_i) {
@@ -75,6 +85,8 @@ void add_contact(Expected& expected, const reference::Contact& contact, std::siz
   expected.turn[i].add(1.0 / radius_i, contact.torque_i);
   expected.damping[i].add(-contact.damping, contact.normal);
   expected.rubbing[i].add(1.0, contact.friction);
+  expected.elastic += contact.elastic_energy;
+  expected.spring += contact.spring_energy;
 }
 
 double cap(ContactEffects effects) {
@@ -103,17 +115,29 @@ TEST_CASE("pair kernels: every instruction set and set of effects against the or
         pairs.resize(std::min(pairs.size(), limit));
 
         Expected expected(bed.count());
-        for (const CandidatePair& pair : pairs) {
+        Springs springs(pairs.size() + list_padding);
+        Random random{std::mt19937_64(31)};
+        const bool otherwise = effects.remembers() && limit != 13;
+        if (otherwise) arrive_otherwise(bed, 5);
+        std::vector<reference::Contact> contacts;
+        for (std::size_t entry = 0; entry < pairs.size(); ++entry) {
+          const CandidatePair& pair = pairs[entry];
           const auto& a = bed.granules[pair.first];
           const auto& b = bed.granules[pair.second];
-          const auto contact = reference::pair_contact(a, b, bed.law(pair.first, pair.second, effects.variety), step);
+          const auto& law = bed.law(pair.first, pair.second, effects.variety);
+          const double reduced = a.radius * b.radius / (a.radius + b.radius);
+          springs.load(entry, 3.0e-5, reduced, random);
+          const reference::Arrival arrival =
+              otherwise ? arrival_of(bed, pair.first, pair.second) : reference::Arrival{};
+          const auto contact =
+              reference::pair_contact(a, b, law, step, springs.before[entry], otherwise ? &arrival : nullptr);
+          contacts.push_back(contact);
           if (!contact.touching) continue;
           add_contact(expected, contact, pair.first, a.radius);
           expected.force[pair.second].add(-1.0, contact.force_i);
           expected.turn[pair.second].add(1.0 / b.radius, contact.torque_j);
           expected.damping[pair.second].add(contact.damping, contact.normal);
           expected.rubbing[pair.second].add(-1.0, contact.friction);
-          expected.elastic += contact.elastic_energy;
           expected.max_overlap = std::max(expected.max_overlap, contact.overlap / std::min(a.radius, b.radius));
           expected.max_closing = std::max(expected.max_closing, contact.approach);
           ++expected.contacts;
@@ -133,10 +157,20 @@ TEST_CASE("pair kernels: every instruction set and set of effects against the or
         arguments.radius = bed.granules.front().radius;
         arguments.mass = bed.granules.front().mass;
         arguments.friction_cap = cap(effects);
+        if (effects.remembers()) arguments.springs = springs.arguments(bed);
+        const std::vector<std::uint32_t> touched_before = springs.touched;
         ContactResult result;
         pair_kernel_for(machine, effects)(arguments, result);
         check_rows(bed, expected, effects, false);
         check_result(result, expected, effects);
+        for (std::size_t entry = 0; entry < contacts.size() && effects.remembers(); ++entry) {
+          const auto& a = bed.granules[pairs[entry].first];
+          const auto& b = bed.granules[pairs[entry].second];
+          if (contacts[entry].touching)
+            check_memory(springs, entry, contacts[entry], a.radius * b.radius / (a.radius + b.radius));
+          else
+            CHECK(springs.touched[entry] == touched_before[entry]);
+        }
       }
 }
 
@@ -213,8 +247,15 @@ TEST_CASE("wall kernels: every instruction set, set of effects, plane and side a
           for (std::uint32_t i = 0; i < ghost; ++i)
             if (i % 7 != 3) list.push_back(i);
           Expected expected(bed.count());
-          for (const std::uint32_t i : list) {
+          Springs springs(list.size() + list_padding);
+          Random random{std::mt19937_64(41)};
+          const bool otherwise = effects.remembers() && surface % 2 == 1;
+          if (otherwise) arrive_otherwise(bed, 6);
+          std::vector<reference::Contact> contacts(list.size());
+          for (std::size_t entry = 0; entry < list.size(); ++entry) {
+            const std::uint32_t i = list[entry];
             const auto& g = bed.granules[i];
+            springs.load(entry, 3.0e-5, g.radius, random);
             reference::WallPoint wall;
             if (axis < 0) {
               wall = reference::box_walls(size, g.position)[static_cast<std::size_t>(surface)];
@@ -226,12 +267,13 @@ TEST_CASE("wall kernels: every instruction set, set of effects, plane and side a
             const double damping_mass =
                 carried ? reference::wall_effective_mass(g.mass, wall.outward, direction, structure_mass) : g.mass;
             const double slip_mass = carried ? 1.0 / (1.0 / g.mass + 1.0 / structure_mass) : g.mass;
-            const auto contact = reference::wall_contact(
-                g, wall.distance, wall.outward, bed.wall_law(i, effects.variety), step, damping_mass, slip_mass);
+            const reference::Arrival arrival = otherwise ? arrival_of(bed, i, i) : reference::Arrival{};
+            const auto& contact = contacts[entry] =
+                reference::wall_contact(g, wall.distance, wall.outward, bed.wall_law(i, effects.variety), step,
+                                        damping_mass, slip_mass, springs.before[entry], otherwise ? &arrival : nullptr);
             if (!contact.touching) continue;
             add_contact(expected, contact, i, g.radius);
             expected.total.add(1.0, contact.force_i);
-            expected.elastic += contact.elastic_energy;
             expected.max_overlap = std::max(expected.max_overlap, contact.overlap / g.radius);
             expected.max_closing = std::max(expected.max_closing, contact.approach);
             ++expected.contacts;
@@ -248,6 +290,7 @@ TEST_CASE("wall kernels: every instruction set, set of effects, plane and side a
           arguments.law = bed.rows.front();
           arguments.laws = bed.rows.data();
           arguments.friction_cap = cap(effects);
+          if (effects.remembers()) arguments.springs = springs.arguments(bed);
           for (std::size_t k = 0; k < 3; ++k) arguments.direction[k] = direction[k];
           if (carried) arguments.enclosure_inverse_mass = arguments.friction_inverse_mass = 1.0 / structure_mass;
           if (axis < 0) {
@@ -265,6 +308,9 @@ TEST_CASE("wall kernels: every instruction set, set of effects, plane and side a
           (axis < 0 ? plane_kernel_for(machine, effects) : side_kernel_for(machine, effects))(arguments, result);
           check_rows(bed, expected, effects, true);
           check_result(result, expected, effects);
+          for (std::size_t entry = 0; entry < contacts.size() && effects.remembers(); ++entry)
+            if (contacts[entry].touching)
+              check_memory(springs, entry, contacts[entry], bed.granules[list[entry]].radius);
           for (std::size_t k = 0; k < 3; ++k)
             CHECK(std::abs(result.force[k] - expected.total.value[k]) < tolerance * expected.total.size);
         }

@@ -43,6 +43,21 @@ void put_in_cylinder(Scene& scene, int axis) {
     for (Vector3& velocity : scene.populations[0].velocities) velocity[k] *= 3.0;
 }
 
+void put_on_springs(Scene& scene) {
+  scene.contact.friction = FrictionLaw::spring;
+  scene.contact.granule.tangential_stiffness = 0.9e7;
+  scene.contact.granule.tangential_damping = 0.02;
+  scene.contact.wall->tangential_stiffness = 1.1e7;
+  scene.contact.wall->tangential_damping = 0.03;
+}
+
+void restitute(Scene& scene, double restitution) {
+  for (ContactConstants* constants : {&scene.contact.granule, &*scene.contact.wall}) {
+    constants->alpha.reset();
+    constants->restitution = restitution;
+  }
+}
+
 const std::vector<Variation>& variations() {
   static const std::vector<Variation> all{
       {"as the paper", [](Scene&) {}},
@@ -156,6 +171,50 @@ const std::vector<Variation>& variations() {
          s.structure.reset();
          s.excitation = Excitation{};
          s.gravity = {0.0, 0.0, 0.0};
+       }},
+      {"springs", put_on_springs},
+      {"springs, verlet",
+       [](Scene& s) {
+         put_on_springs(s);
+         s.time.integrator = Integrator::verlet;
+       }},
+      {"springs, no rotation, a list from all pairs",
+       [](Scene& s) {
+         put_on_springs(s);
+         s.contact.rotation = false;
+         s.verlet.policy = ListPolicy::all_pairs;
+       }},
+      {"springs in a cylinder, several sizes, rebuilds at every step",
+       [](Scene& s) {
+         put_on_springs(s);
+         put_in_cylinder(s, 0);
+         Population& p = s.populations[0];
+         for (std::size_t i = 0; i < p.positions.size(); ++i)
+           p.radii.push_back(p.radius * (1.0 - 0.05 * static_cast<double>(i % 3)));
+         s.verlet.policy = ListPolicy::none;
+       }},
+      {"without tension",
+       [](Scene& s) {
+         s.contact.tension = false;
+         restitute(s, 0.2);
+       }},
+      {"springs without tension, verlet",
+       [](Scene& s) {
+         put_on_springs(s);
+         s.contact.tension = false;
+         restitute(s, 0.4);
+         s.time.integrator = Integrator::verlet;
+       }},
+      {"linear damping without tension",
+       [](Scene& s) {
+         s.contact.tension = false;
+         s.contact.damping = NormalDamping::linear;
+         s.contact.granule.alpha.reset();
+         s.contact.wall->alpha.reset();
+         s.contact.granule.restitution.reset();
+         s.contact.wall->restitution.reset();
+         s.contact.granule.normal_damping = 1.0;
+         s.contact.wall->normal_damping = 1.0;
        }},
       {"a cylinder along x", [](Scene& s) { put_in_cylinder(s, 0); }},
       {"a cylinder along y", [](Scene& s) { put_in_cylinder(s, 1); }},

@@ -185,3 +185,48 @@ TEST_CASE("pairs of populations and a population with the wall have constants of
   CHECK(missing(scene) == std::vector<std::string>{"contact.pair.2.between", "contact.pair.3.between",
                                                    "contact.pair.4.between", "contact.pair.5.between"});
 }
+
+TEST_CASE("alpha without tension gives its restitution where the force ends") {
+  CHECK(tsuji_alpha_without_tension(1.0) == 0.0);
+  for (const double bad : {0.0, -0.1, 1.0001, std::nan("")})
+    CHECK_THROWS_AS(tsuji_alpha_without_tension(bad), SceneError);
+  for (const double e : {0.05, 0.1, 0.135, 0.136, 0.3, 0.5, 0.89, 0.99}) {
+    // d'' = -d^1.5 - alpha d^0.25 d' with unit mass and stiffness, until it would pull.
+    const double alpha = tsuji_alpha_without_tension(e), dt = 2.0e-4;
+    double x = 0.0, v = 1.0;
+    const auto force = [&](double at, double speed) {
+      return -std::pow(std::max(at, 0.0), 1.5) - alpha * std::pow(std::max(at, 0.0), 0.25) * speed;
+    };
+    for (int n = 0; n < 10 || force(x, v) < 0.0; ++n) {
+      const double v1 = v + 0.5 * dt * force(x, v), x1 = x + 0.5 * dt * v;
+      v += dt * force(x1, v1);
+      x += dt * v1;
+    }
+    CHECK(-v == doctest::Approx(e).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("tangential stiffness scales with the radii as the stiffness does and is Mindlin's where moduli are given") {
+  Scene scene;
+  scene.populations = {population(1.5e-3, 3.0e9, 0.35), population(6.0e-3, 2.0e11, 0.3)};
+  scene.contact = losses();
+  scene.contact.friction = FrictionLaw::spring;
+  const ContactTable mindlin = make_contact_table(scene);
+  const auto shear = [](double young, double poisson) { return young / (2.0 * (1.0 + poisson)); };
+  CHECK(mindlin.between(0, 1).tangential_stiffness_coefficient ==
+        doctest::Approx(8.0 / (1.65 / shear(3.0e9, 0.35) + 1.7 / shear(2.0e11, 0.3))).epsilon(1e-14));
+  CHECK(mindlin.wall[0].tangential_stiffness_coefficient == mindlin.between(0, 0).tangential_stiffness_coefficient);
+
+  scene.contact.granule.stiffness = 1.0e7;
+  scene.contact.granule.reference_radius = 3.0e-3;
+  CHECK(missing(scene) == std::vector<std::string>{"contact.granule.tangential_stiffness"});
+  scene.contact.granule.tangential_stiffness = 4.0e6;
+  scene.contact.granule.tangential_damping = 0.01;
+  scene.contact.wall = scene.contact.granule;
+  const ContactTable table = make_contact_table(scene);
+  CHECK(table.between(0, 1).tangential_stiffness_coefficient ==
+        doctest::Approx(0.4 * table.between(0, 1).stiffness_coefficient).epsilon(1e-14));
+  CHECK(table.wall[1].tangential_stiffness_coefficient ==
+        doctest::Approx(0.4 * table.wall[1].stiffness_coefficient).epsilon(1e-14));
+  CHECK(table.between(1, 1).tangential_damping == 0.01);
+}

@@ -4,6 +4,7 @@
 #include "kernels/dispatch.hpp"
 #include "kernels/reference.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <string>
@@ -24,8 +25,10 @@ inline std::vector<InstructionSet> machines() {
 
 inline std::vector<ContactEffects> contact_effects() {
   std::vector<ContactEffects> all;
-  for (const auto damping : {kernels::Damping::none, kernels::Damping::tsuji, kernels::Damping::linear})
-    for (const auto friction : {Friction::none, Friction::coulomb_without_rotation, Friction::coulomb})
+  for (const auto damping : {kernels::Damping::none, kernels::Damping::tsuji, kernels::Damping::linear,
+                             kernels::Damping::tsuji_without_tension, kernels::Damping::linear_without_tension})
+    for (const auto friction : {Friction::none, Friction::coulomb_without_rotation, Friction::coulomb,
+                                Friction::spring_without_rotation, Friction::spring})
       for (const auto variety : {Variety::alike, Variety::sizes, Variety::materials})
         for (const auto observation :
              {Observation::none, Observation::energies, Observation::ledger, Observation::ledger_and_energies})
@@ -50,6 +53,8 @@ struct Bed {
   std::size_t populations = 3;
   std::vector<reference::Law> laws; ///< populations x populations; of walls: the first row
   std::vector<LawRow> rows;
+  std::vector<SpringLawRow> spring_rows;
+  std::vector<MotionRow> arrival; ///< velocities that brought the granules here, where these are not `motion`
 
   std::size_t count() const { return granules.size(); }
   const reference::Law& law(std::size_t i, std::size_t j, Variety variety) const {
@@ -61,7 +66,8 @@ struct Bed {
   GranuleArrays arrays() {
     GranuleArrays a;
     a.position = position.data();
-    a.motion = a.predicted = motion.data();
+    a.motion = arrival.empty() ? motion.data() : arrival.data();
+    a.predicted = motion.data();
     a.force = force.data();
     a.population = population.data();
     a.damping_granule = damping_granule.data();
@@ -116,15 +122,26 @@ inline Bed make_bed(ContactEffects effects, unsigned seed) {
       law.alpha = 0.077 * differ;
       law.normal_damping = 0.2 * differ;
       law.friction = 0.3 * differ;
-      law.damping = effects.damping == kernels::Damping::tsuji    ? reference::Damping::tsuji
-                    : effects.damping == kernels::Damping::linear ? reference::Damping::linear
-                                                                  : reference::Damping::none;
-      law.coulomb = effects.friction != Friction::none;
-      law.rotation = effects.friction == Friction::coulomb;
+      law.tangential_stiffness_coefficient = 2.1e8 * differ;
+      law.tangential_damping = 0.02 * differ;
+      const bool linear =
+          effects.damping == kernels::Damping::linear || effects.damping == kernels::Damping::linear_without_tension;
+      law.damping = linear                                      ? reference::Damping::linear
+                    : effects.damping == kernels::Damping::none ? reference::Damping::none
+                                                                : reference::Damping::tsuji;
+      if (effects.only_pushes()) { // strong enough to pull now and then
+        law.tension = false;
+        law.alpha *= 20.0;
+        law.normal_damping *= 10.0;
+      }
+      law.spring = effects.remembers();
+      law.coulomb = effects.rubs() && !law.spring;
+      law.rotation = effects.rotates();
       bed.laws.push_back(law);
       bed.rows.push_back({law.stiffness_coefficient,
                           law.damping == reference::Damping::linear ? law.normal_damping : law.alpha, law.friction,
                           0.0});
+      bed.spring_rows.push_back({law.tangential_stiffness_coefficient, law.tangential_damping, {0.0, 0.0}});
     }
   const std::size_t count = bed.count();
   for (const reference::Granule& g : bed.granules) {
@@ -145,6 +162,62 @@ inline Bed make_bed(ContactEffects effects, unsigned seed) {
   bed.damping_granule.resize(count + 2);
   bed.damping_wall.resize(count + 2);
   return bed;
+}
+
+/// Springs that contacts remember, entry by entry of a list: a third of them fresh, a third out of touch for long.
+struct Springs {
+  std::vector<reference::Spring> before;
+  std::vector<SpringRow> rows;
+  std::vector<std::uint32_t> touched, slots;
+  static constexpr std::uint32_t now = 1000;
+
+  explicit Springs(std::size_t entries)
+      : before(entries), rows(entries), touched(entries, 0), slots(entries + pair_chunk + list_padding) {
+    for (auto& row : rows) row = {};
+  }
+  void load(std::size_t entry, double overlap, double reduced_radius, Random& random) {
+    const double then = overlap * random(0.3, 1.6);
+    const reference::Vector force = random.vector(0.7);
+    const auto kind = random.engine() % 3;
+    if (kind == 0) return;
+    rows[entry] = {{force[0], force[1], force[2]}, std::sqrt(reduced_radius * then)};
+    touched[entry] = kind == 1 ? now - 1 : now - 7;
+    if (kind == 1) before[entry] = {force, then};
+  }
+  SpringArguments arguments(const Bed& bed) {
+    SpringArguments a;
+    a.rows = rows.data();
+    a.touched = touched.data();
+    a.slots = slots.data();
+    a.now = now;
+    a.before = now - 1;
+    a.time_step = step;
+    a.law = bed.spring_rows.front();
+    a.laws = bed.spring_rows.data();
+    return a;
+  }
+};
+
+/// Other velocities than the bed's own for having come here.
+inline void arrive_otherwise(Bed& bed, unsigned seed) {
+  Random random{std::mt19937_64(seed)};
+  bed.arrival = bed.motion;
+  for (MotionRow& row : bed.arrival)
+    for (int k = 0; k < 3; ++k) {
+      row.velocity[k] += random(-0.3, 0.3);
+      row.surface_spin[k] += random(-0.3, 0.3);
+    }
+}
+
+inline reference::Arrival arrival_of(const Bed& bed, std::size_t i, std::size_t j) {
+  reference::Arrival arrival;
+  for (std::size_t k = 0; k < 3; ++k) {
+    arrival.velocity_i[k] = bed.arrival[i].velocity[k];
+    arrival.velocity_j[k] = bed.arrival[j].velocity[k];
+    arrival.spin_i[k] = bed.arrival[i].surface_spin[k] / bed.granules[i].radius;
+    arrival.spin_j[k] = bed.arrival[j].surface_spin[k] / bed.granules[j].radius;
+  }
+  return arrival;
 }
 
 } // namespace grandamp::test

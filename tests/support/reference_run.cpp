@@ -1,5 +1,7 @@
 #include "tests/support/reference_run.hpp"
 
+#include "solver/material.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,18 +29,22 @@ Law laws_of(const Contact& contact) {
                 : contact.damping == NormalDamping::linear ? reference::Damping::linear
                                                            : reference::Damping::none;
   law.coulomb = contact.friction == FrictionLaw::coulomb;
-  law.rotation = contact.rotation && law.coulomb;
+  law.spring = contact.friction == FrictionLaw::spring;
+  law.rotation = contact.rotation && contact.friction != FrictionLaw::none;
+  law.tension = contact.tension;
   return law;
 }
 
 void set_constants(Law& law, const ContactConstants& constants) {
   if (constants.restitution) {
     const double logarithm = std::log(*constants.restitution);
-    law.alpha = -std::sqrt(5.0) * logarithm / std::hypot(logarithm, std::numbers::pi);
+    law.alpha = law.tension ? -std::sqrt(5.0) * logarithm / std::hypot(logarithm, std::numbers::pi)
+                            : tsuji_alpha_without_tension(*constants.restitution);
   }
   if (constants.alpha) law.alpha = *constants.alpha;
   law.normal_damping = constants.normal_damping.value_or(0.0);
   law.friction = constants.friction.value_or(0.0);
+  law.tangential_damping = constants.tangential_damping.value_or(0.0);
 }
 
 /// 4/3 E*, Eq. (4) as corrected.
@@ -140,6 +146,9 @@ ReferenceRun::ReferenceRun(const Scene& scene, double step)
     for (const Population& b : scene.populations) {
       Law law = common;
       set_constants(law, granule);
+      if (granule.tangential_stiffness)
+        law.tangential_stiffness_coefficient =
+            *granule.tangential_stiffness * std::sqrt(2.0 / granule.reference_radius.value());
       // stiffness * sqrt(2 R / reference) = C sqrt(R)
       law.stiffness_coefficient =
           granule.stiffness
@@ -153,6 +162,8 @@ ReferenceRun::ReferenceRun(const Scene& scene, double step)
     } else {
       const ContactConstants& wall = *scene.contact.wall;
       set_constants(law, wall);
+      if (wall.tangential_stiffness)
+        law.tangential_stiffness_coefficient = *wall.tangential_stiffness / std::sqrt(wall.reference_radius.value());
       // stiffness * sqrt(r / reference) = C sqrt(r)
       law.stiffness_coefficient = wall.stiffness ? *wall.stiffness / std::sqrt(wall.reference_radius.value())
                                                  : elastic_coefficient(a.young.value(), a.poisson.value(),
@@ -196,7 +207,7 @@ ReferenceRun::ReferenceRun(const Scene& scene, double step)
   }
 
   // Half a step back: u(-1/2) = v0 - dt/2 (F/m + g) in the laboratory, less the enclosure's V(-1/2).
-  const Forces at_start = forces(initial_);
+  const Forces at_start = forces(initial_, initial_, {}, true);
   state_.host = enclosure_.start(at_start.reaction);
   state_.granules = initial_;
   for (std::size_t i = 0; i < initial_.size(); ++i) {
@@ -218,8 +229,16 @@ const Law& ReferenceRun::wall_law(std::size_t i) const {
   return wall_laws_[static_cast<std::size_t>(population_[i])];
 }
 
-ReferenceRun::Forces ReferenceRun::forces(const std::vector<Granule>& moving) const {
+ReferenceRun::Forces ReferenceRun::forces(const std::vector<Granule>& moving, const std::vector<Granule>& arrived,
+                                          const Springs& springs, bool at_start) const {
   Forces all;
+  const auto spring_of = [&](std::size_t a, std::size_t b) {
+    const auto found = springs.find({a, b});
+    return found == springs.end() ? reference::Spring{} : found->second;
+  };
+  const auto arrival_of = [&](const Granule& a, const Granule& b) {
+    return at_start ? reference::Arrival{} : reference::Arrival{a.velocity, a.spin, b.velocity, b.spin};
+  };
   const std::size_t count = moving.size();
   all.force.resize(count);
   all.torque.resize(count);
@@ -229,21 +248,27 @@ ReferenceRun::Forces ReferenceRun::forces(const std::vector<Granule>& moving) co
     const auto walls = box.shape == EnclosureShape::box
                            ? reference::box_walls(box.size, one.position)
                            : reference::cylinder_walls(box.diameter, box.height, box.axis, one.position);
-    for (const reference::WallPoint& wall : walls) {
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      const reference::WallPoint& wall = walls[w];
+      // A granule on a cylinder's axis is told of its ends alone.
+      const std::size_t number = count + w + (box.shape == EnclosureShape::cylinder ? 3 - walls.size() : 0);
       if (wall.distance >= one.radius) continue;
       const double damping_mass =
           enclosure_.structure()
               ? reference::wall_effective_mass(one.mass, wall.outward, enclosure_.direction(), enclosure_.mass())
               : one.mass;
       const double slip_mass = 1.0 / (1.0 / one.mass + wall_slip_inverse_mass_);
+      const reference::Arrival arrival = arrival_of(arrived[i], {});
       const reference::Contact contact =
-          reference::wall_contact(one, wall.distance, wall.outward, wall_law(i), step_, damping_mass, slip_mass);
+          reference::wall_contact(one, wall.distance, wall.outward, wall_law(i), step_, damping_mass, slip_mass,
+                                  spring_of(i, number), &arrival);
       if (!contact.touching) continue;
       add(all.force[i], 1.0, contact.force_i);
       add(all.torque[i], 1.0, contact.torque_i);
       all.reaction -= dot(contact.force_i, enclosure_.direction());
-      all.elastic += contact.elastic_energy;
-      all.touches.push_back({i, i, contact});
+      all.elastic += contact.elastic_energy + contact.spring_energy;
+      all.spring_wall += contact.spring_energy;
+      all.touches.push_back({i, i, number, contact});
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -254,14 +279,17 @@ ReferenceRun::Forces ReferenceRun::forces(const std::vector<Granule>& moving) co
       if (std::abs(b.position[0] - a.position[0]) >= reach || std::abs(b.position[1] - a.position[1]) >= reach ||
           std::abs(b.position[2] - a.position[2]) >= reach)
         continue;
-      const reference::Contact contact = reference::pair_contact(a, b, pair_law(i, j), step_);
+      const reference::Arrival arrival = arrival_of(arrived[i], arrived[j]);
+      const reference::Contact contact =
+          reference::pair_contact(a, b, pair_law(i, j), step_, spring_of(i, j), &arrival);
       if (!contact.touching) continue;
       add(all.force[i], 1.0, contact.force_i);
       add(all.force[j], -1.0, contact.force_i);
       add(all.torque[i], 1.0, contact.torque_i);
       add(all.torque[j], 1.0, contact.torque_j);
-      all.elastic += contact.elastic_energy;
-      all.touches.push_back({i, j, contact});
+      all.elastic += contact.elastic_energy + contact.spring_energy;
+      all.spring_granule += contact.spring_energy;
+      all.touches.push_back({i, j, 0, contact});
     }
   }
   return all;
@@ -283,7 +311,10 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
       }
     }
   }
-  const Forces acting = forces(moving);
+  const Forces acting = forces(moving, state.granules, state.springs, state.step_number == 0);
+  state.springs.clear();
+  for (const Touch& touch : acting.touches)
+    state.springs[{touch.i, touch.j == touch.i ? touch.wall : touch.j}] = touch.contact.memory;
 
   // The enclosure over the interval about t_n.
   ReferenceHost before = state.host, middle = state.host, after = state.host;
@@ -355,6 +386,8 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
     sample->reaction = acting.reaction;
     sample->contacts = static_cast<std::int64_t>(acting.touches.size());
     sample->ledger = state.ledger;
+    sample->ledger.friction_granule -= acting.spring_granule;
+    sample->ledger.friction_wall -= acting.spring_wall;
     sample->stored.elastic = acting.elastic;
     sample->stored.structure = enclosure_.stored(middle);
     for (std::size_t i = 0; i < count; ++i) {

@@ -7,6 +7,7 @@
 #include "solver/simulation.hpp"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -62,6 +63,8 @@ public:
   double max_overlap() const { return state_.max_overlap; }
 
 private:
+  /// By granule, and partner or number of granules plus wall.
+  using Springs = std::map<std::pair<std::size_t, std::size_t>, reference::Spring>;
   struct State {
     std::int64_t step_number = 0;
     std::vector<reference::Granule> granules; ///< velocity relative to the enclosure, at t_(n-1/2)
@@ -70,21 +73,26 @@ private:
     ReferenceHost host; ///< at t_(n-1/2)
     Ledger ledger;
     double max_overlap = 0.0;
+    Springs springs; ///< of the contacts in touch at t_(n-1)
   };
   struct Touch {
     std::size_t i, j; ///< j == i: a wall
+    std::size_t wall; ///< which
     reference::Contact contact;
   };
   struct Forces {
     std::vector<reference::Vector> force, torque;
     std::vector<Touch> touches;
     double reaction = 0.0, elastic = 0.0;
+    double spring_granule = 0.0, spring_wall = 0.0; ///< in tangential springs, J
   };
 
   const reference::Law& pair_law(std::size_t i, std::size_t j) const;
   const reference::Law& wall_law(std::size_t i) const;
-  /// Contact forces at the granules' positions, damping and slip from `moving`'s velocities and spins.
-  Forces forces(const std::vector<reference::Granule>& moving) const;
+  /// Contact forces at the granules' positions, damping and slip from `moving`'s velocities and spins; `arrived` has
+  /// those that brought the granules there, for the tangential springs (at the start nothing has loaded them).
+  Forces forces(const std::vector<reference::Granule>& moving, const std::vector<reference::Granule>& arrived,
+                const Springs& springs, bool at_start) const;
   /// One step; tells the state at its t_n if asked, granules with synchronised laboratory velocities.
   void advance(State& state, Sample* sample, std::vector<reference::Granule>* synchronised = nullptr) const;
 

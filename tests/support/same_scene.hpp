@@ -15,8 +15,8 @@ inline auto values(const Population& p) {
                   p.spins, p.radii, p.masses);
 }
 inline auto values(const ContactConstants& c) {
-  return std::tie(c.stiffness, c.reference_radius, c.restitution, c.alpha, c.normal_damping, c.friction, c.young,
-                  c.poisson);
+  return std::tie(c.stiffness, c.reference_radius, c.restitution, c.alpha, c.normal_damping, c.friction,
+                  c.tangential_stiffness, c.tangential_damping, c.young, c.poisson);
 }
 inline auto values(const Structure& s) {
   return std::tie(s.mass, s.stiffness, s.damping, s.direction, s.displacement, s.velocity);
@@ -50,9 +50,9 @@ inline bool same_scene(const Scene& a, const Scene& b) {
     if (a.contact.pairs[i].between != b.contact.pairs[i].between ||
         !same(a.contact.pairs[i].constants, b.contact.pairs[i].constants))
       return false;
-  return std::tie(a.title, a.seed, a.gravity, a.packing, a.contact.damping, a.contact.friction, a.contact.rotation) ==
-             std::tie(b.title, b.seed, b.gravity, b.packing, b.contact.damping, b.contact.friction,
-                      b.contact.rotation) &&
+  return std::tie(a.title, a.seed, a.gravity, a.packing, a.contact.damping, a.contact.friction, a.contact.rotation,
+                  a.contact.tension) == std::tie(b.title, b.seed, b.gravity, b.packing, b.contact.damping,
+                                                 b.contact.friction, b.contact.rotation, b.contact.tension) &&
          same(a.enclosure, b.enclosure) && same(a.contact.granule, b.contact.granule) &&
          same(a.contact.wall, b.contact.wall) && same(a.structure, b.structure) && same(a.excitation, b.excitation) &&
          same(a.time, b.time) && same(a.verlet, b.verlet) && same(a.output, b.output);
