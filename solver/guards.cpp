@@ -59,16 +59,56 @@ std::string deepest_contact(const GuardView& view) {
   return text;
 }
 
-constexpr const char* shorter_step = "raise time.steps_per_contact or time.impact_speed";
+/// Velocity, position and spin are numbers whose squares are, too.
+bool sound(const GuardView& view, std::uint32_t row) {
+  const kernels::MotionRow& m = view.granules.motion[row];
+  const kernels::PositionRow& p = view.granules.position[row];
+  double square = 0.0;
+  for (const double v : {m.velocity[0], m.velocity[1], m.velocity[2], m.surface_spin[0], m.surface_spin[1],
+                         m.surface_spin[2], p.x, p.y, p.z})
+    square += v * v;
+  return std::isfinite(square);
+}
 
-/// Policies that can miss a contact find it late, and deep.
-std::string list_advice(const GuardView& view) {
-  const ListPolicy policy = view.plan.scene.verlet.policy;
-  if (policy != ListPolicy::predicted && policy != ListPolicy::fixed) return "";
-  return "; or the list was too old when they met: verlet.policy = \"guarded\" misses no contact";
+/// The granules and walls that a granule touches by the list, or whose state does not tell, in words.
+std::string neighbours_of(const GuardView& view, std::uint32_t row) {
+  constexpr std::size_t most_told = 6;
+  std::vector<std::string> told;
+  const auto tell = [&](const std::string& who, double overlap, double radius) {
+    if (overlap <= 0.0) return; // not a number: it is told
+    told.push_back(std::isfinite(overlap) ? fmt::format("{}, {:.3g} % of a radius deep", who, 100.0 * overlap / radius)
+                                          : who + ", no longer measurable");
+  };
+  const kernels::PositionRow& a = view.granules.position[row];
+  for (const Segment& segment : view.list.segments()) {
+    for (const PairList* pairs : {&segment.inner, &segment.boundary})
+      for (std::size_t k = 0; k < pairs->count(); ++k) {
+        const auto [i, j] = pairs->data()[k];
+        if ((i != row && j != row) || i >= view.granules.count()) continue;
+        const std::uint32_t other = i == row ? j : i;
+        const kernels::PositionRow& b = view.granules.position[other];
+        tell(fmt::format("granule {}{}", view.granules.id[other], sound(view, other) ? "" : " (not finite either)"),
+             a.radius + b.radius - std::hypot(b.x - a.x, b.y - a.y, b.z - a.z), std::min(a.radius, b.radius));
+      }
+    for (std::size_t w = 0; w < view.walls.size(); ++w)
+      for (std::size_t k = 0; k < segment.walls[w].count; ++k)
+        if (segment.walls[w].granules[k] == row)
+          tell("the wall " + view.walls[w].name, a.radius - distance_inside(view.walls[w], a), a.radius);
+  }
+  if (told.empty()) return "touching nothing that is listed";
+  std::string text = "touching " + told.front();
+  for (std::size_t k = 1; k < std::min(told.size(), most_told); ++k) text += "; " + told[k];
+  if (told.size() > most_told) text += fmt::format("; and {} more", told.size() - most_told);
+  return text;
 }
 
 } // namespace
+
+std::string list_advice(const Plan& plan) {
+  const ListPolicy policy = plan.scene.verlet.policy;
+  if (policy != ListPolicy::predicted && policy != ListPolicy::fixed) return "";
+  return "; or the list was too old when they met: verlet.policy = \"guarded\" misses no contact";
+}
 
 double closing_speed_limit(const Plan& plan) {
   if (plan.granules == 0) return std::numeric_limits<double>::infinity();
@@ -76,21 +116,26 @@ double closing_speed_limit(const Plan& plan) {
   return plan.impact_speed * std::pow(steps / std::min(fewest_steps_per_contact, 0.95 * steps), 5.0);
 }
 
-GuardError not_finite(const GuardView& view) {
-  std::string who;
-  for (std::uint32_t i = 0; i < view.granules.count() && who.empty(); ++i) {
-    const kernels::MotionRow& m = view.granules.motion[i];
-    if (!std::isfinite(m.velocity[0] + m.velocity[1] + m.velocity[2])) who = granule_text(view, i);
+GuardError not_finite(const GuardView& view, double max_overlap) {
+  std::uint32_t first = 0; // by id: rows are in no order that a person knows
+  bool found = false;
+  for (std::uint32_t i = 0; i < view.granules.count(); ++i) {
+    if (sound(view, i) || (found && view.granules.id[i] > view.granules.id[first])) continue;
+    first = i;
+    found = true;
   }
-  return GuardError(fmt::format("a velocity is not finite {}: {}; the step is too long for the forces met: {}",
-                                when(view), who, shorter_step));
+  const std::string who = found ? granule_text(view, first) + ", " + neighbours_of(view, first) : "no granule's own";
+  return GuardError(
+      fmt::format("a velocity is not finite {}: {}; the deepest overlap met so far is {:.3g} % of a radius; "
+                  "the step is too long for the forces met: {}{}",
+                  when(view), who, 100.0 * max_overlap, shorter_step, list_advice(view.plan)));
 }
 
 GuardError too_deep(const GuardView& view, double overlap) {
   return GuardError(fmt::format(
       "an overlap of {:.0f} % of a radius {} (Hertz allows none beyond {:.0f} %): {}; make the contact stiffer "
       "(contact.granule.stiffness, contact.wall.stiffness), or {}{}",
-      100.0 * overlap, when(view), 100.0 * overlap_stop, deepest_contact(view), shorter_step, list_advice(view)));
+      100.0 * overlap, when(view), 100.0 * overlap_stop, deepest_contact(view), shorter_step, list_advice(view.plan)));
 }
 
 GuardError too_fast(const GuardView& view, double closing_speed) {
@@ -104,11 +149,12 @@ GuardError too_fast(const GuardView& view, double closing_speed) {
 GuardError escaped(const GuardView& view, std::int64_t count) {
   std::string who;
   for (const Segment& segment : view.list.segments())
-    if (who.empty() && !segment.outside.empty()) who = granule_text(view, segment.outside.front());
+    if (who.empty() && !segment.outside.empty())
+      who = granule_text(view, segment.outside.front()) + ", " + neighbours_of(view, segment.outside.front());
   return GuardError(
       fmt::format("{} granule{} left the enclosure {}: {}; the walls are too soft or the step is too long: "
                   "raise contact.wall.stiffness, or {}{}",
-                  count, count == 1 ? "" : "s", when(view), who, shorter_step, list_advice(view)));
+                  count, count == 1 ? "" : "s", when(view), who, shorter_step, list_advice(view.plan)));
 }
 
 std::string deep_overlap_warning(const GuardView& view, double overlap) {

@@ -19,6 +19,11 @@ inline constexpr double overlap_stop = 0.5;
 /// Steps below which a contact is no longer followed; less where the scene itself starts from fewer.
 inline constexpr double fewest_steps_per_contact = 3.5;
 
+/// What a person may change so that contacts are followed by more steps.
+inline constexpr const char* shorter_step = "raise time.steps_per_contact or time.impact_speed";
+/// Policies that can miss a contact find it late, and deep: a half sentence that says so; empty for the others.
+std::string list_advice(const Plan& plan);
+
 struct GuardView {
   const Plan& plan;
   const Granules& granules;
@@ -31,7 +36,8 @@ struct GuardView {
 /// The closing speed at which a contact would be followed by too few steps, m/s.
 double closing_speed_limit(const Plan& plan);
 
-GuardError not_finite(const GuardView& view);
+/// `max_overlap` over the smaller radius, met so far.
+GuardError not_finite(const GuardView& view, double max_overlap);
 GuardError too_deep(const GuardView& view, double overlap);
 GuardError too_fast(const GuardView& view, double closing_speed);
 GuardError escaped(const GuardView& view, std::int64_t count);

@@ -77,6 +77,12 @@ struct RunState {
   GuardStatistics guards;
   bool warned_overlap = false;
   bool warned_closing = false;
+  std::int64_t balance_samples = 0;
+  double balance_first = 0.0;
+  double balance_gravitational = 0.0;
+  double balance_largest = 0.0;
+  std::int64_t balance_beyond = 0;
+  bool warned_balance = false;
 
   std::int64_t audited = 0;
   std::int64_t missed = 0;
@@ -182,6 +188,14 @@ template <class State, class Field> void visit_fields(State& s, Field&& field) {
   field(FieldInfo{"guards/escaped", "1", "granules beyond a wall"}, s.guards.escaped);
   field(FieldInfo{"guards/warned_overlap", "1", "the warning of deep overlaps was given"}, s.warned_overlap);
   field(FieldInfo{"guards/warned_closing", "1", "the warning of closing speeds was given"}, s.warned_closing);
+
+  field(FieldInfo{"guards/balance_samples", "1", "of the energy balance, so far"}, s.balance_samples);
+  field(FieldInfo{"guards/balance_first", "J", "stored energy less work, with losses, of the first one"},
+        s.balance_first);
+  field(FieldInfo{"guards/balance_gravitational", "J", "of the first one"}, s.balance_gravitational);
+  field(FieldInfo{"guards/balance_largest", "J", "largest term of the balance, so far"}, s.balance_largest);
+  field(FieldInfo{"guards/balance_beyond", "1", "samples in a row that the step does not explain"}, s.balance_beyond);
+  field(FieldInfo{"guards/warned_balance", "1", "the warning of the energy balance was given"}, s.warned_balance);
 
   field(FieldInfo{"audit/audited", "1", "steps at which the list was compared"}, s.audited);
   field(FieldInfo{"audit/missed", "1", "contacts that began unlisted"}, s.missed);

@@ -1,5 +1,6 @@
 #include "solver/simulation.hpp"
 
+#include "solver/energy_watch.hpp"
 #include "solver/errors.hpp"
 #include "solver/packing.hpp"
 #include "solver/pouring.hpp"
@@ -115,6 +116,8 @@ struct Simulation::State {
         response(plan.window, forcing_period(plan.scene.excitation), plan.time_step), cycles(cycles_of(plan)),
         end_noted(saved.end_noted), contact_samples(saved.contact_samples), contacts_sum(saved.contacts_sum) {
     response.restore(response_of(saved));
+    balance.restore({saved.balance_samples, saved.balance_first, saved.balance_gravitational, saved.balance_largest,
+                     saved.balance_beyond, saved.warned_balance});
     if (cycles && !cycles->restore(saved.vibration_cycles)) throw StateError("the state of the cycles is none");
   }
 
@@ -158,6 +161,8 @@ struct Simulation::State {
   Stepper stepper;
   ResponseAccumulator response;
   std::optional<VibrationCycles> cycles; ///< free vibration
+  EnergyWatch balance;
+  std::vector<std::string> warnings; ///< of the balance
   bool end_noted = false;
   std::int64_t contact_samples = 0;
   double contacts_sum = 0.0;
@@ -202,6 +207,7 @@ Sample Simulation::step_and_sample() {
   const StepRecord& record = s.stepper.step(true);
   s.note(at, record);
   Sample sample = s.sample_of(record, at);
+  if (auto warning = s.balance.note(sample, s.plan, s.stepper.guards())) s.warnings.push_back(std::move(*warning));
   if (s.plan.granules > 0) {
     ++s.contact_samples;
     s.contacts_sum += static_cast<double>(sample.contacts) / static_cast<double>(s.plan.granules);
@@ -264,6 +270,13 @@ RunState Simulation::state() const {
   saved.window = state_->plan.window;
   save_response(state_->response.state(), saved);
   if (state_->cycles) saved.vibration_cycles = state_->cycles->state();
+  const EnergyWatch::State& balance = state_->balance.state();
+  saved.balance_samples = balance.samples;
+  saved.balance_first = balance.first;
+  saved.balance_gravitational = balance.gravitational;
+  saved.balance_largest = balance.largest;
+  saved.balance_beyond = balance.beyond;
+  saved.warned_balance = balance.warned;
   saved.end_noted = state_->end_noted;
   saved.contact_samples = state_->contact_samples;
   saved.contacts_sum = state_->contacts_sum;
@@ -295,7 +308,9 @@ void Simulation::set_profile(Profile* profile) {
   state_->stepper.set_profile(profile);
 }
 std::vector<std::string> Simulation::take_warnings() {
-  return state_->stepper.take_warnings();
+  std::vector<std::string> warnings = state_->stepper.take_warnings();
+  for (std::string& warning : std::exchange(state_->warnings, {})) warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 } // namespace grandamp

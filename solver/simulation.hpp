@@ -136,7 +136,8 @@ public:
   ResponseStatistics response() const; ///< of the steps so far inside the window
   /// Times the phases of the steps to come into `profile` (solver/profile.hpp); null: no more.
   void set_profile(Profile* profile);
-  /// Warnings since the last call (deep overlaps, closing speeds above the estimate), each told once.
+  /// Warnings since the last call (deep overlaps, closing speeds above the estimate, an energy balance that the step
+  /// does not explain), each told once.
   std::vector<std::string> take_warnings();
 
   /// The exact state, between two steps; nothing moves.

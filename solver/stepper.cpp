@@ -263,7 +263,7 @@ StepRecord Stepper::collect(double reaction, const EnclosureStep& enclosure) {
 
 void Stepper::watch(double sum_speed_squared) {
   const GuardView view{plan_, granules_, list_, walls_, step_number_, time_step_};
-  if (!std::isfinite(sum_speed_squared)) throw not_finite(view);
+  if (!std::isfinite(sum_speed_squared)) throw not_finite(view, guards_.max_overlap);
   if (guards_.max_overlap > overlap_stop) throw too_deep(view, guards_.max_overlap);
   if (guards_.max_closing > closing_limit_) throw too_fast(view, guards_.max_closing);
   if (guards_.max_overlap > overlap_warning && !warned_overlap_) {

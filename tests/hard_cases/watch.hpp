@@ -29,6 +29,7 @@ struct Figures {
   double max_closing = 0.0;     ///< m/s
   double assumed_closing = 0.0; ///< m/s, that the step rests on
   double microseconds_per_step = 0.0;
+  bool warned_balance = false; ///< the run told of an energy balance that the step does not explain
   bool warned_closing = false; ///< the run told of closing speeds above the one assumed
   std::string stopped;         ///< what a guard said, if one ended the run
 };

@@ -1,10 +1,12 @@
 // A run that would go wrong stops, and says what happened, to whom, when, and what to change.
 #include "solver/errors.hpp"
+#include "solver/run_state.hpp"
 #include "solver/simulation.hpp"
 
 #include <doctest/doctest.h>
 
 #include <numbers>
+#include <optional>
 #include <string>
 
 namespace grandamp::test {
@@ -94,6 +96,48 @@ TEST_CASE("guards: a deep overlap is told, one beyond half a radius stops the ru
   CHECK(contains(what, "granule 0 (acrylic)"));
   CHECK(contains(what, "granule 1 (acrylic)"));
   CHECK(contains(what, "stiffness"));
+}
+
+TEST_CASE("guards: the first granule whose speed is no number is named, with its neighbours and the overlap") {
+  Scene scene = head_on(1.0e7);
+  Simulation simulation(scene);
+  while (simulation.guards().max_overlap == 0.0) simulation.step();
+  for (int n = 0; n < 3; ++n) simulation.step(); // in touch
+  // Both speeds are numbers still, but no longer their squares.
+  RunState state = simulation.state();
+  for (std::size_t row = 0; row < 2; ++row) state.velocity[3 * row] = 1.0e180;
+  Simulation spoilt(scene, state);
+  const std::string what = stopped_by(spoilt);
+  CAPTURE(what);
+  CHECK(contains(what, "a velocity is not finite at t = "));
+  CHECK(contains(what, "granule 0 (acrylic)"));
+  CHECK(contains(what, "granule 1 (not finite either)"));
+  CHECK(contains(what, "the deepest overlap met so far is"));
+  CHECK(contains(what, "time.impact_speed"));
+}
+
+TEST_CASE("guards: an energy balance that the step does not explain is told once, and a good one never") {
+  for (const bool spoilt : {false, true}) {
+    CAPTURE(spoilt);
+    Scene scene = head_on(1.0e7);
+    Simulation simulation(scene);
+    std::size_t warnings = 0;
+    std::int64_t step = 0;
+    Simulation* run = &simulation;
+    std::optional<Simulation> other;
+    while (!run->finished()) {
+      run->step_and_sample();
+      if (++step == 40 && spoilt) { // energy from nowhere
+        RunState state = run->state();
+        for (double& v : state.velocity) v *= 1.2;
+        other.emplace(scene, state);
+        run = &*other;
+      }
+      for (const std::string& warning : run->take_warnings())
+        warnings += contains(warning, "the energy balance is off") ? 1 : 0;
+    }
+    CHECK(warnings == (spoilt ? 1 : 0));
+  }
 }
 
 } // namespace grandamp::test
