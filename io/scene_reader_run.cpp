@@ -72,7 +72,9 @@ void read_time(TableReader& root, Scene& scene) {
   scene.time.integrator =
       table.choice<Integrator>("integrator", {{"leapfrog", Integrator::leapfrog}, {"verlet", Integrator::verlet}})
           .value_or(Integrator::leapfrog);
-  table.choice<bool>("precision", {{"double", true}}, {"mixed"});
+  scene.time.precision =
+      table.choice<Precision>("precision", {{"double", Precision::full}, {"mixed", Precision::mixed}})
+          .value_or(Precision::full);
   table.finish();
 }
 

@@ -119,7 +119,7 @@ std::string summary_text(const RunRecord& record) {
   summary["granule_steps_per_second"] = record.wall_time > 0.0 ? granule_steps / record.wall_time : 0.0;
   summary["threads"] = record.threads;
   summary["isa"] = record.isa;
-  summary["precision"] = "double";
+  summary["precision"] = plan.scene.time.precision == Precision::mixed ? "mixed" : "double";
   summary["effects"] = plan.effects;
   summary["effects_left_out"] = plan.effects_left_out;
   if (plan.scene.structure) summary["structure"] = structure_json(record);

@@ -70,6 +70,7 @@ void choose_effects(Plan& plan, const ContactTable& contacts) {
   effect("energy", scene.output.energy);
   effect("audit", granules && scene.verlet.audit > 0);
   effect("verlet", granules && scene.time.integrator == Integrator::verlet);
+  effect("mixed", granules && scene.time.precision == Precision::mixed);
 }
 
 void choose_list(Plan& plan) {

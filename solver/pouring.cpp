@@ -27,6 +27,7 @@ Plan pouring_plan(const Plan& plan) {
   scene.time.impact_speed.reset();
   scene.time.steps_per_contact = 8.0;
   scene.time.integrator = Integrator::leapfrog;
+  scene.time.precision = Precision::full;
   scene.time.duration = longest_pour;
   scene.verlet = {};
   for (Population& population : scene.populations) population.speed = 0.0;

@@ -105,6 +105,9 @@ struct Excitation {
 };
 
 enum class Integrator { leapfrog, verlet };
+/// mixed: positions, velocities and sums in double, the law of contact between granules in float. Not with spring
+/// friction, nor without tension.
+enum class Precision { full, mixed };
 
 struct TimeControl {
   double duration = 0.0;              ///< s
@@ -112,6 +115,7 @@ struct TimeControl {
   std::optional<double> step;         ///< s, instead of steps_per_contact
   std::optional<double> impact_speed; ///< closing speed for T_c, m/s; left out: estimated
   Integrator integrator = Integrator::leapfrog;
+  Precision precision = Precision::full;
 };
 
 enum class ListPolicy { guarded, predicted, displacement, fixed, none, all_pairs };

@@ -198,6 +198,11 @@ void check_controls(Faults& faults, const Scene& scene) {
     faults.add("time.step", fmt::format("{:g}", *time.step), "longer than the duration",
                fmt::format("at most {:g} s", time.duration));
   if (time.impact_speed) faults.positive("time.impact_speed", *time.impact_speed);
+  if (time.precision == Precision::mixed && scene.contact.friction == FrictionLaw::spring)
+    faults.add("time.precision", "mixed", "not with contact.friction = \"spring\"",
+               "\"double\"; or friction \"coulomb\" or \"none\"");
+  if (time.precision == Precision::mixed && scene.contact.damping != NormalDamping::none && !scene.contact.tension)
+    faults.add("time.precision", "mixed", "not with contact.tension = false", "\"double\"; or tension = true");
 
   const VerletControl& verlet = scene.verlet;
   const double skin = verlet.skin.value_or(0.0);

@@ -54,6 +54,23 @@ TEST_CASE("a run cut at random steps and resumed has the results of one never cu
   }
 }
 
+TEST_CASE("mixed precision: cut and resumed, and with other output, the same bits") {
+  const TemporaryFolder folder;
+  const std::vector<std::string> mixed{"time.precision=mixed"};
+  const SceneDocument document = read_scene_text(small_scene(), "small.toml", mixed);
+  run_scene(document, folder / "whole", threads(1));
+  RunResult result = run_scene(document, folder / "cut", stopping_after(1237));
+  while (result.status == RunStatus::interrupted) result = resume_run(folder / "cut", {}, stopping_after(3001));
+  REQUIRE(result.status == RunStatus::done);
+  check_same(outcomes_of(folder / "cut"), outcomes_of(folder / "whole"));
+  CHECK(nlohmann::json::parse(content_of(folder / "cut/summary.json"))["precision"] == "mixed");
+  for (const char* other : {"output.energy=false", "output.history_interval=7e-6"}) {
+    const std::filesystem::path run = folder / other;
+    run_scene(read_scene_text(small_scene(), "small.toml", {mixed.front(), other}), run, threads(1));
+    check_same_granules(read_final_granules(run / "results.h5"), read_final_granules(folder / "whole/results.h5"));
+  }
+}
+
 TEST_CASE("a finished run says so, and --set time.duration goes on as if it had been meant so from the start") {
   const TemporaryFolder folder;
   // Durations that are whole numbers of a step without rounding, a window that both have, and a closing speed given: an
@@ -116,7 +133,7 @@ TEST_CASE("a change that would alter the past is refused with its key") {
   const TemporaryFolder folder;
   run_scene(scene_of(small_scene()), folder / "run", stopping_after(500));
   for (const std::string key : {"time.step", "granules.0.count", "contact.granule.friction", "seed", "verlet.policy",
-                                "structure.mass", "output.energy", "time.integrator", "colour"}) {
+                                "structure.mass", "output.energy", "time.integrator", "time.precision", "colour"}) {
     CAPTURE(key);
     CHECK_THROWS_WITH_AS(resume_run(folder / "run", {key + "=1"}, threads(1)), doctest::Contains(key.c_str()),
                          UsageError);

@@ -279,7 +279,7 @@ const std::vector<BadScene> bad_scenes{
     {"steps_per_contact = 8", "step = \"adaptive\"", {"time.step = 'adaptive': not yet"}},
     {"steps_per_contact = 8", "step = \"small\"", {"time.step = 'small': wrong type: a string"}},
     {"steps_per_contact = 8", "error = 0.01", {"time.error = 0.01: not yet"}},
-    {"steps_per_contact = 8", "precision = \"mixed\"", {"time.precision = 'mixed': not yet", "allowed: \"double\""}},
+    {"steps_per_contact = 8", "precision = \"half\"", {"time.precision = 'half'", "\"double\", \"mixed\""}},
     {"steps_per_contact = 8", "integrator = \"euler\"", {"time.integrator = 'euler'", "\"leapfrog\", \"verlet\""}},
     {"steps_per_contact = 8", "impact_speed = 0", {"time.impact_speed = 0: out of range"}},
     // Lists.
