@@ -125,6 +125,7 @@ struct Simulation::State {
     sample.velocity = record.enclosure.velocity;
     sample.excitation = record.enclosure.excitation;
     sample.reaction = record.reaction;
+    sample.wall_force = record.wall_force;
     sample.stored.kinetic = record.kinetic;
     sample.stored.elastic = record.elastic;
     sample.stored.structure = record.enclosure.stored;

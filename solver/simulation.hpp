@@ -37,6 +37,7 @@ struct Sample {
   double velocity = 0.0;     ///< m/s
   double excitation = 0.0;   ///< force on the structure, N (prescribed motion: 0)
   double reaction = 0.0;     ///< of the granules on the enclosure along its direction, N
+  Vector3 wall_force{};      ///< of the granules on the enclosure, N; `reaction` is its part along the direction
   StoredEnergy stored;
   std::int64_t contacts = 0; ///< granule and wall contacts
   Ledger ledger;             ///< up to this instant; zeros when the ledger is off

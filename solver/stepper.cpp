@@ -240,6 +240,7 @@ StepRecord Stepper::collect(double reaction, const EnclosureStep& enclosure) {
     record.spring_granule += result.pairs.spring;
     record.spring_wall += result.walls.spring;
     record.contacts += result.walls.contacts + result.pairs.contacts;
+    for (std::size_t k = 0; k < 3; ++k) record.wall_force[k] -= result.walls.force[k];
     record.kinetic += result.motion.kinetic;
     for (std::size_t k = 0; k < 3; ++k) record.mass_moment[k] += result.motion.mass_moment[k];
     record.dissipated.normal_granule += result.motion.normal_granule;

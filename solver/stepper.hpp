@@ -29,6 +29,7 @@ namespace grandamp {
 struct StepRecord {
   EnclosureStep enclosure;
   double reaction = 0.0;                          ///< N
+  Vector3 wall_force{0.0, 0.0, 0.0};              ///< on the enclosure, N
   double elastic = 0.0, kinetic = 0.0;            ///< J; with energies
   double spring_granule = 0.0, spring_wall = 0.0; ///< of `elastic`, in tangential springs; with energies
   Vector3 mass_moment{0.0, 0.0, 0.0};             ///< with energies

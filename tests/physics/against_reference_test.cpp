@@ -250,6 +250,7 @@ TEST_CASE("runs of every combination of laws stay beside the oracle's") {
         const double energy = b.stored.kinetic + b.stored.elastic;
         host = std::max({host, relative(a.displacement, b.displacement, 1.0e-3), relative(a.velocity, b.velocity, 1.0),
                          relative(a.excitation, b.excitation, 1.0), relative(a.reaction, b.reaction, 10.0)});
+        for (std::size_t k = 0; k < 3; ++k) host = std::max(host, relative(a.wall_force[k], b.wall_force[k], 10.0));
         energies = std::max({energies, relative(a.stored.kinetic, b.stored.kinetic, energy),
                              relative(a.stored.elastic, b.stored.elastic, energy),
                              relative(a.stored.gravitational, b.stored.gravitational, energy),

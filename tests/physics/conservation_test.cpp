@@ -1,4 +1,6 @@
 // Momentum, angular momentum and energy where nothing outside takes part.
+#include "tests/support/energy_allowance.hpp"
+#include "tests/support/momenta.hpp"
 #include "tests/support/runs.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -9,66 +11,6 @@
 
 using namespace grandamp;
 using namespace grandamp::test;
-
-namespace {
-
-struct Momenta {
-  Vector3 linear{}, angular{}; ///< angular: about the centre of mass, spins included
-  double linear_scale = 0.0, angular_scale = 0.0;
-};
-
-Momenta momenta(const GranuleTable& granules, const std::vector<double>& masses) {
-  Momenta all;
-  Vector3 centre{};
-  double total = 0.0;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    total += masses[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      centre[k] += masses[i] * granules.position[i][k];
-      all.linear[k] += masses[i] * granules.velocity[i][k];
-    }
-    all.linear_scale += masses[i] * length(granules.velocity[i]);
-  }
-  for (double& component : centre) component /= total;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const Vector3 orbital = cross(difference(granules.position[i], centre), granules.velocity[i]);
-    const double inertia = 0.4 * masses[i] * granules.radius[i] * granules.radius[i];
-    for (std::size_t k = 0; k < 3; ++k) all.angular[k] += masses[i] * orbital[k] + inertia * granules.spin[i][k];
-    all.angular_scale += masses[i] * length(orbital) + inertia * length(granules.spin[i]);
-  }
-  return all;
-}
-
-struct Allowance {
-  double during = 0.0; ///< largest rise of kinetic and elastic energy together at any step of a contact
-  double after = 0.0;  ///< and once it is over
-};
-
-/// The integrator's own error on energy: an elastic, frictionless head-on hit at T_c/8, the worst of many phases of
-/// entry, over the energy at the start.
-template <class Run> Allowance energy_allowance(Integrator integrator) {
-  Allowance worst;
-  for (int p = 0; p < 40; ++p) {
-    Scene scene = two_granules(1.5e-3, 2.5, 0.0);
-    const double step = pair_contact_duration(scene, 5.0) / 8.0;
-    scene = two_granules(1.5e-3, 2.5, 5.0 * step * (1.0 + p / 40.0));
-    make_lossless(scene);
-    scene.time.integrator = integrator;
-    use_step(scene, step);
-    Run run(scene);
-    const double first = run.sample().stored.kinetic;
-    for (std::int64_t n = steps_of(scene); n >= 0; --n) {
-      const StoredEnergy now = run.sample().stored;
-      const double rise = (now.kinetic + now.elastic) / first - 1.0;
-      worst.during = std::max(worst.during, rise);
-      if (n == 0) worst.after = std::max(worst.after, rise);
-      if (n > 0) run.step();
-    }
-  }
-  return worst;
-}
-
-} // namespace
 
 TEST_CASE_TEMPLATE("momentum and angular momentum are conserved to rounding, whatever the contacts do", Run, OracleRun,
                    SolverRun) {

@@ -266,6 +266,7 @@ ReferenceRun::Forces ReferenceRun::forces(const std::vector<Granule>& moving, co
       add(all.force[i], 1.0, contact.force_i);
       add(all.torque[i], 1.0, contact.torque_i);
       all.reaction -= dot(contact.force_i, enclosure_.direction());
+      add(all.wall_force, -1.0, contact.force_i);
       all.elastic += contact.elastic_energy + contact.spring_energy;
       all.spring_wall += contact.spring_energy;
       all.touches.push_back({i, i, number, contact});
@@ -384,6 +385,7 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
     sample->velocity = middle.velocity;
     sample->excitation = enclosure_.force(now);
     sample->reaction = acting.reaction;
+    sample->wall_force = acting.wall_force;
     sample->contacts = static_cast<std::int64_t>(acting.touches.size());
     sample->ledger = state.ledger;
     sample->ledger.friction_granule -= acting.spring_granule;
