@@ -84,7 +84,7 @@ private:
     std::vector<reference::Vector> force, torque;
     std::vector<Touch> touches;
     double reaction = 0.0, elastic = 0.0;
-    reference::Vector wall_force{}; ///< on the enclosure, N
+    reference::Vector wall_force{};                 ///< on the enclosure, N
     double spring_granule = 0.0, spring_wall = 0.0; ///< in tangential springs, J
   };
 

@@ -1,0 +1,110 @@
+#include "tests/hard_cases/choices.hpp"
+
+#include <array>
+
+#include <fmt/format.h>
+
+namespace grandamp::test {
+
+namespace {
+
+template <class Value> struct Level {
+  Value value;
+  const char* name;
+};
+
+// One list per factor; what is added here is in every hard case.
+constexpr std::array friction_laws{Level<FrictionLaw>{FrictionLaw::coulomb, "coulomb"},
+                                   Level<FrictionLaw>{FrictionLaw::spring, "spring"},
+                                   Level<FrictionLaw>{FrictionLaw::none, "none"}};
+constexpr std::array policies{
+    Level<ListPolicy>{ListPolicy::guarded, "guarded"},     Level<ListPolicy>{ListPolicy::displacement, "displacement"},
+    Level<ListPolicy>{ListPolicy::none, "none"},           Level<ListPolicy>{ListPolicy::all_pairs, "all-pairs"},
+    Level<ListPolicy>{ListPolicy::predicted, "predicted"}, Level<ListPolicy>{ListPolicy::fixed, "fixed"}};
+constexpr std::array steps_per_contact{8.0, 16.0};
+constexpr std::array integrators{Level<Integrator>{Integrator::leapfrog, "leapfrog"},
+                                 Level<Integrator>{Integrator::verlet, "verlet"}};
+constexpr std::array<std::uint64_t, 3> seeds{1, 2, 3};
+
+template <class Levels, class Value> const char* name_of(const Levels& levels, Value value) {
+  for (const auto& level : levels)
+    if (level.value == value) return level.name;
+  return "?";
+}
+
+} // namespace
+
+std::string told(const Choice& choice) {
+  return fmt::format("{}, {}, {:g}, {}, {}", name_of(friction_laws, choice.friction), name_of(policies, choice.policy),
+                     choice.steps_per_contact, name_of(integrators, choice.integrator), choice.seed);
+}
+
+std::vector<std::vector<std::size_t>> pairwise_rows(const std::vector<std::size_t>& levels) {
+  const std::size_t factors = levels.size();
+  std::vector<std::vector<std::vector<bool>>> covered(factors * factors);
+  std::size_t left = 0;
+  for (std::size_t a = 0; a < factors; ++a)
+    for (std::size_t b = a + 1; b < factors; ++b) {
+      covered[a * factors + b].assign(levels[a], std::vector<bool>(levels[b], false));
+      left += levels[a] * levels[b];
+    }
+  const auto for_pairs = [&](const std::vector<std::size_t>& row, const auto& visit) {
+    for (std::size_t a = 0; a < factors; ++a)
+      for (std::size_t b = a + 1; b < factors; ++b) visit(covered[a * factors + b][row[a]], row[b]);
+  };
+  std::vector<std::vector<std::size_t>> rows;
+  while (left > 0) {
+    std::vector<std::size_t> row(factors, 0), best;
+    std::size_t most = 0;
+    for (bool more = true; more;) {
+      std::size_t fresh = 0;
+      for_pairs(row, [&](const std::vector<bool>& seen, std::size_t b) { fresh += seen[b] ? 0 : 1; });
+      if (fresh > most || best.empty()) {
+        most = fresh;
+        best = row;
+      }
+      more = false;
+      for (std::size_t f = factors; f-- > 0 && !more;) {
+        row[f] = row[f] + 1 < levels[f] ? row[f] + 1 : 0;
+        more = row[f] != 0;
+      }
+    }
+    for_pairs(best, [&](std::vector<bool>& seen, std::size_t b) {
+      left -= seen[b] ? 0 : 1;
+      seen[b] = true;
+    });
+    rows.push_back(best);
+  }
+  return rows;
+}
+
+const std::vector<Choice>& pairwise_choices() {
+  static const std::vector<Choice> choices = [] {
+    std::vector<Choice> all;
+    for (const std::vector<std::size_t>& row : pairwise_rows(
+             {friction_laws.size(), policies.size(), steps_per_contact.size(), integrators.size(), seeds.size()}))
+      all.push_back({friction_laws[row[0]].value, policies[row[1]].value, steps_per_contact[row[2]],
+                     integrators[row[3]].value, seeds[row[4]]});
+    return all;
+  }();
+  return choices;
+}
+
+void apply(const Choice& choice, Scene& scene) {
+  scene.contact.friction = choice.friction;
+  std::vector<ContactConstants*> all{&scene.contact.granule};
+  if (scene.contact.wall) all.push_back(&*scene.contact.wall);
+  for (PairContact& pair : scene.contact.pairs) all.push_back(&pair.constants);
+  for (ContactConstants* constants : all) {
+    if (choice.friction == FrictionLaw::none) constants->friction.reset();
+    if (choice.friction != FrictionLaw::spring) continue;
+    constants->tangential_stiffness = 0.8 * constants->stiffness.value();
+    constants->tangential_damping = 0.01;
+  }
+  scene.verlet.policy = choice.policy;
+  scene.time.steps_per_contact = choice.steps_per_contact;
+  scene.time.integrator = choice.integrator;
+  scene.seed = choice.seed;
+}
+
+} // namespace grandamp::test
