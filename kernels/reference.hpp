@@ -11,12 +11,16 @@ using Vector = std::array<double, 3>;
 
 enum class Damping { none, tsuji, linear };
 
+/// The share of m_t |v_t| / dt that one contact's friction may take in a step.
+inline constexpr double friction_cap = 0.2;
+
 /// The constants of one kind of contact and the laws in force.
 struct Law {
   double stiffness_coefficient = 0.0; ///< C in k_n = C sqrt(R), N/m^2
   double alpha = 0.0;                 ///< Tsuji's constant
   double normal_damping = 0.0;        ///< linear damping, N s/m
   double friction = 0.0;              ///< mu
+  double cap = friction_cap;          ///< half of it where forces see velocities half a step ahead
   Damping damping = Damping::none;
   bool tension = true;                           ///< the damping may pull at the end of a contact
   bool coulomb = false;                          ///< Coulomb friction, capped
@@ -71,9 +75,6 @@ struct Dissipation {
   double normal = 0.0;   ///< D_n d'
   double friction = 0.0; ///< -f_t . v_t; what a tangential spring stores included
 };
-
-/// The share of m_t |v_t| / dt that one contact's friction may take in a step.
-inline constexpr double friction_cap = 0.2;
 
 /// Fang et al. 2007, Eqs. (2), (4), (6), (7). `step` (s) bounds the friction: it cannot reverse the slip. `before` is
 /// what the contact remembered a step ago.

@@ -127,7 +127,7 @@ void check_explicit(const Room& room, const Spheres& spheres, const std::vector<
       const double overlap = (radius + spheres.radius[j] - distance) / smaller;
       if (distance < 1.0e-9 * smaller)
         fault(i, fmt::format("granules {} and {} have one centre", j, i), "centres apart");
-      else if (overlap >= 0.5)
+      else if (overlap >= 0.5 * (1.0 - 1.0e-9))
         fault(i, fmt::format("granules {} and {} overlap by {:.3g} of the smaller radius", j, i, overlap),
               "below 0.5 of the smaller radius");
       else if (overlap > 1.0e-9)

@@ -67,9 +67,10 @@ Scene jerked_bed(std::uint64_t seed, bool whole) {
   return scene;
 }
 
-Scene resting_bed(std::uint64_t seed, bool whole) {
-  Scene scene = table_5(whole ? 317 : 100, whole ? 10.0 : 0.4);
-  for (Vector3& p : scene.populations[0].positions) p[0] += 1.0e-6 * static_cast<double>(seed);
+Scene resting_bed(std::uint64_t, bool whole) {
+  Scene scene = table_5(0, whole ? 10.0 : 0.2);
+  place_by_count(scene, whole ? 317 : 60);
+  scene.packing = PackingKind::settled;
   scene.structure.reset();
   scene.excitation = Excitation{};
   scene.time.impact_speed.reset();

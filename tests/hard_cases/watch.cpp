@@ -66,7 +66,7 @@ public:
   void step(const Sample& sample, double step) {
     for (std::size_t k = 0; k < 3; ++k) {
       impulse_[k] += step * force_on_granules(sample, k);
-      impulse_scale_ += step * std::abs(force_on_granules(sample, k));
+      impulse_scale_ += step * (std::abs(total_mass_ * scene_.gravity[k]) + std::abs(sample.wall_force[k]));
       walls_ = walls_ || sample.wall_force[k] != 0.0;
     }
   }

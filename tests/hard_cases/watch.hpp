@@ -44,12 +44,17 @@ struct WatchOptions {
 /// What the integrator does to the energy of one elastic contact while it lasts.
 double allowed_rise(const Choice& choice);
 
+/// How far the ledger of a single contact may be off: its elastic energy is known at steps alone, to second order.
+inline double residual_of_a_contact(const Choice& choice) {
+  return choice.steps_per_contact < 16.0 ? 0.05 : 0.0125;
+}
+
 /// Runs the scene to its end, or to a guard.
 Figures watch(Scene scene, const Choice& choice, const WatchOptions& options = {});
 
 /// Bounds that a case states for itself; the others are the same for all.
 struct Bounds {
-  double residual = 0.01;
+  double residual = 0.01; ///< over many contacts; one contact's may be more (residual_of_a_contact)
   double momentum = 1.0e-10;
   double angular = 1.0e-10;
   bool rise = true;      ///< whether the energy is held to allowed_rise

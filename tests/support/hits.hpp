@@ -62,7 +62,7 @@ struct Hits {
       all.masses.push_back(other_mass);
     }
     scene.time.impact_speed = speed;
-    scene.time.duration = 4.0 * lasts + step; // at 89 degrees the closing speed is a sixtieth: 2.3 times as long
+    scene.time.duration = 6.0 * lasts + step; // at 89 degrees the closing speed is a sixtieth: 2.3 times as long
     use_step(scene, step);
   }
 };

@@ -139,7 +139,8 @@ ReferenceHost ReferenceEnclosure::start(double reaction) const {
 
 ReferenceRun::ReferenceRun(const Scene& scene, double step)
     : scene_(scene), step_(step), enclosure_(scene, step), populations_(scene.populations.size()) {
-  const Law common = laws_of(scene.contact);
+  Law common = laws_of(scene.contact);
+  if (scene.time.integrator == Integrator::verlet) common.cap = 0.5 * reference::friction_cap;
   rotation_ = common.rotation;
   const ContactConstants& granule = scene.contact.granule;
   for (const Population& a : scene.populations) {
