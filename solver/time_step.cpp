@@ -86,6 +86,7 @@ struct StiffestContact {
   std::string name;
   double damping_time = infinity;        ///< least effective mass over normal damping (linear), s
   double overdamping = 1.0;              ///< largest alpha over that of critical damping, sqrt(5); 1 where it is less
+  double alpha = 0.0;                    ///< largest (Tsuji)
   double unit_spring_time = infinity;    ///< 1/omega of the stiffest tangential spring at the overlap of 1 m/s, s
   double spring_damping_time = infinity; ///< least effective mass over tangential damping, s
 };
@@ -106,8 +107,10 @@ StiffestContact stiffest_contact(const Scene& scene, const ContactTable& contact
     }
     if (scene.contact.damping == NormalDamping::linear && law.normal_damping > 0.0)
       stiffest.damping_time = std::min(stiffest.damping_time, mass / law.normal_damping);
-    if (scene.contact.damping == NormalDamping::tsuji)
+    if (scene.contact.damping == NormalDamping::tsuji) {
       stiffest.overdamping = std::max(stiffest.overdamping, law.alpha / std::sqrt(5.0));
+      stiffest.alpha = std::max(stiffest.alpha, law.alpha);
+    }
     const double slip_mass = scene.contact.rotation ? 2.0 / 7.0 * mass : mass;
     if (law.tangential_stiffness_coefficient > 0.0) {
       const double normal = law.stiffness_coefficient * std::sqrt(reduced_radius);
@@ -243,6 +246,15 @@ TimeStep choose_time_step(const Scene& scene, const ContactTable& contacts) {
   // So does Tsuji's, once it is beyond critical, which only contacts without tension can be.
   bound(stable, stable.step / stiffest.overdamping, "the contacts' normal damping is too strong for it");
   bound(chosen, chosen.step / stiffest.overdamping, chosen.reason + ", less for damping beyond critical");
+  // Verlet's forces see velocities half a step ahead: damping that takes the share a of a velocity in a step grows
+  // beyond a = 1, where leapfrog bears 2. At its deepest one contact takes 3.3 alpha dt / T_c, a granule among twelve
+  // four times that.
+  if (scene.time.integrator == Integrator::verlet && stiffest.alpha > 0.0) {
+    bound(stable, result.contact_duration / (4.0 * stiffest.alpha),
+          "the contacts' normal damping is too strong for it under verlet");
+    bound(chosen, result.contact_duration / (14.0 * stiffest.alpha),
+          "T_c over 14 alpha, the damping's bound under verlet, which is stricter than steps_per_contact");
+  }
   // One contact's spring bears 2/omega; a granule among twelve half of it.
   const double spring_time = contact_duration_at(stiffest.unit_spring_time, 1.0, result.impact_speed);
   bound(stable, spring_time, "the contacts' tangential springs are too stiff for it");

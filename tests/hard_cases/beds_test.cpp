@@ -52,6 +52,7 @@ TEST_CASE("hard cases: a bed at rest loses its motion to a floor and stays there
     const double unit = scene.populations[0].mass * 9.81 * 2.0 * scene.populations[0].radius *
                         static_cast<double>(scene.populations[0].count);
     WatchOptions options;
+    if (full_tests()) options.sample_every = 50;
     options.on_look = [&](const GranuleTable& granules, const Sample& sample) {
       energies.push_back(sample.stored.kinetic / unit);
       Vector3 centre{};
@@ -112,12 +113,48 @@ TEST_CASE("hard cases: sizes 1 to 10 in one shaken bed") {
   run_all_choices(report, size_contrast, options, {}, nothing_more);
 }
 
-TEST_CASE("hard cases: one granule 20 times as wide among many") {
+TEST_CASE("hard cases: one granule 20 times as wide among thousands") {
   CaseReport report("one big granule");
   WatchOptions options;
   options.looks = 10;
-  options.audit_every = options.audit_every_if_missing = full_tests() ? 400 : 200;
-  run_all_choices(report, one_big, options, {}, [](const Choice&, const Figures& figures) {
-    return fmt::format("{:.3g} us per step", figures.microseconds_per_step);
-  });
+  for (const Choice& choice : pairwise_choices()) {
+    const std::string settings = told(choice);
+    CAPTURE(settings);
+    const Figures figures = watch(one_big(choice.seed, false), choice, options);
+    report.add(choice, figures, {}, fmt::format("{:.3g} us per step", figures.microseconds_per_step));
+  }
+}
+
+TEST_CASE("hard cases: one granule 20 times as wide among 100,000") {
+  if (!full_tests()) return;
+  CaseReport report("one in 100,000");
+  WatchOptions options;
+  options.looks = 4;
+  options.audit_every = 100; // of all 5e9 pairs
+  for (const Choice& choice : {Choice{}, Choice{.friction = FrictionLaw::spring, .integrator = Integrator::verlet}}) {
+    const std::string settings = told(choice);
+    CAPTURE(settings);
+    const Figures figures = watch(one_big(choice.seed, true), choice, options);
+    report.add(choice, figures, {},
+               fmt::format("{:.3g} us per step, {:.3g} ns per granule", figures.microseconds_per_step,
+                           1.0e3 * figures.microseconds_per_step / static_cast<double>(figures.granules)));
+  }
+}
+
+TEST_CASE("hard cases: jammed and damped so strongly that nothing rebounds") {
+  CaseReport report("jammed, e = 0.1");
+  for (const Integrator integrator : {Integrator::leapfrog, Integrator::verlet})
+    for (const bool tension : {true, false}) {
+      Choice choice;
+      choice.integrator = integrator;
+      const std::string settings = told(choice);
+      CAPTURE(settings);
+      CAPTURE(tension);
+      Scene scene = jammed_box(1, full_tests());
+      scene.contact.tension = tension;
+      for (ContactConstants* constants : {&scene.contact.granule, &*scene.contact.wall}) constants->restitution = 0.1;
+      WatchOptions options;
+      options.looks = 30;
+      report.add(choice, watch(scene, choice, options), {}, tension ? "tension" : "no tension");
+    }
 }

@@ -68,8 +68,8 @@ Scene jerked_bed(std::uint64_t seed, bool whole) {
 }
 
 Scene resting_bed(std::uint64_t, bool whole) {
-  Scene scene = table_5(0, whole ? 10.0 : 0.2);
-  place_by_count(scene, whole ? 317 : 60);
+  Scene scene = table_5(0, whole ? 10.0 : 0.3);
+  place_by_count(scene, whole ? 317 : 98);
   scene.packing = PackingKind::settled;
   scene.structure.reset();
   scene.excitation = Excitation{};
@@ -83,7 +83,7 @@ Scene jammed_box(std::uint64_t, bool whole) {
   scene.gravity = {0.0, 0.0, -9.81};
   place_by_count(scene, static_cast<std::size_t>(0.62 * 2.7e-5 / (4.0 / 3.0 * pi * 1.5e-3 * 1.5e-3 * 1.5e-3)));
   shake(scene, 200.0, 50.0, {0.0, 0.0, 1.0});
-  scene.time.duration = whole ? 0.1 : 0.005;
+  scene.time.duration = whole ? 0.05 : 0.005;
   return scene;
 }
 
@@ -117,7 +117,7 @@ Scene size_contrast(std::uint64_t seed, bool whole) {
   small.count = 1500;
   scene.populations.push_back(small);
   shake(scene, 50.0, 3.0, {0.0, 0.0, 1.0});
-  scene.time.duration = whole ? 0.2 : 5.0e-3;
+  scene.time.duration = whole ? 0.04 : 5.0e-3;
   return scene;
 }
 
@@ -204,7 +204,7 @@ Scene one_big(std::uint64_t seed, bool whole) {
   small.speed = 0.1;
   small.count = whole ? 100000 : 3000;
   scene.populations.push_back(small);
-  scene.time.duration = whole ? 1.0e-3 : 1.0e-3;
+  scene.time.duration = whole ? 3.0e-4 : 1.0e-3;
   return scene;
 }
 

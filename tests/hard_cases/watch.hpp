@@ -37,6 +37,7 @@ struct WatchOptions {
   std::int64_t looks = 100;                 ///< at all granules, spread over the run
   std::int64_t audit_every = 200;           ///< steps between all-pairs searches
   std::int64_t audit_every_if_missing = 10; ///< the same, where the policy may miss contacts
+  std::int64_t sample_every = 1;            ///< energies, every so many steps; above 1 momentum is not balanced
   /// Sees every look, the first and the last instant among them.
   std::function<void(const GranuleTable&, const Sample&)> on_look;
 };
