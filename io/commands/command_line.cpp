@@ -7,7 +7,10 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <functional>
 #include <new>
 
@@ -102,6 +105,11 @@ void require_isa(const std::string& isa) {
                        kernels::name(kernels::best_available()) + " (see --version)");
     }
   }
+}
+
+void tell(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw FileError(std::string("standard output: cannot write: ") + std::strerror(errno));
 }
 
 void tell_faults(const std::filesystem::path& scene, const std::vector<Problem>& faults) {

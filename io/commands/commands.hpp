@@ -66,6 +66,8 @@ int inspect_command(const InspectArguments& arguments);
 /// Throws UsageError unless this machine runs the instruction set of that name; empty: none asked for.
 void require_isa(const std::string& isa);
 
+/// Writes to standard output. Throws FileError: a full disk behind a redirection must not look like success.
+void tell(const std::string& text);
 /// Logs each fault, or each note, as a line of its own.
 void tell_faults(const std::filesystem::path& scene, const std::vector<Problem>& faults);
 void tell_notes(const std::filesystem::path& scene, const std::vector<Problem>& notes);
