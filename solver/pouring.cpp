@@ -24,6 +24,7 @@ Plan pouring_plan(const Plan& plan) {
   scene.output.energy = false;
   scene.output.window.reset();
   scene.time.step.reset();
+  scene.time.error.reset();
   scene.time.impact_speed.reset();
   scene.time.steps_per_contact = 8.0;
   scene.time.integrator = Integrator::leapfrog;
