@@ -117,8 +117,9 @@ std::string plan_text(const Plan& plan, const std::string& isa, int threads) {
   }
   sheet.line("time step", fmt::format("{:.6g} s: {}", plan.time_step, plan.time_step_reason));
   if (plan.step_choice) {
-    sheet.line("error", "of a contact: what its velocities and spins are off by, as the root of an energy over the impact's; "
-                        "the mean square over all phases of entry, of the worst contact and impact");
+    sheet.line("error",
+               "of a contact: what its velocities and spins are off by, as the root of an energy over the impact's; "
+               "the mean square over all phases of entry, of the worst contact and impact");
   }
   sheet.line("steps", fmt::format("{} for {:.6g} s", plan.steps, plan.time_step * static_cast<double>(plan.steps)));
   if (plan.scene.structure) {

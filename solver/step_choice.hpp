@@ -23,11 +23,11 @@ struct StepChoice {
   std::string reason() const; ///< in words
 };
 
-/// Of a ladder of steps in a contact from 4 to 256, each at most a quarter above the one before, the fewest at which the
-/// error is at most `scene.time.error`; and also at every finer step up to four times as many, as which slower contacts
-/// see the same step. The ladder is coarse so that the last bits of a machine's mathematical functions cannot turn the
-/// choice. If the scene leaves the integrator free, velocity Verlet is taken where it gets by with fewer steps.
-/// `step_at(k)`: the step, s, that k steps in a contact lead to. Throws SceneError if no step will do.
+/// Of a ladder of steps in a contact from 4 to 256, each at most a quarter above the one before, the fewest at which
+/// the error is at most `scene.time.error`; and also at every finer step up to four times as many, as which slower
+/// contacts see the same step. The ladder is coarse so that the last bits of a machine's mathematical functions cannot
+/// turn the choice. If the scene leaves the integrator free, velocity Verlet is taken where it gets by with fewer
+/// steps. `step_at(k)`: the step, s, that k steps in a contact lead to. Throws SceneError if no step will do.
 StepChoice choose_steps(const Scene& scene, const std::vector<ContactKind>& kinds, double impact_speed,
                         const std::function<double(double)>& step_at);
 

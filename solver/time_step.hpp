@@ -31,8 +31,8 @@ double contact_duration_at(double contact_duration, double its_speed, double clo
 /// Of every distinct law between granules and at walls, by the contact of it that lasts shortest.
 ContactCalibration calibrate_contacts(const Scene& scene, const ContactTable& contacts, double impact_speed);
 
-/// Throws SceneError if the scene's own `step` (or steps_per_contact) is above what is stable, or its `error` below what
-/// can be reached.
+/// Throws SceneError if the scene's own `step` (or steps_per_contact) is above what is stable, or its `error` below
+/// what can be reached.
 TimeStep choose_time_step(const Scene& scene, const ContactTable& contacts);
 
 } // namespace grandamp
