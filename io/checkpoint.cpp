@@ -14,6 +14,7 @@
 #include <system_error>
 #include <thread>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t format_version = 1;
+constexpr std::int64_t format_version = 2;
 
 template <class SampleType, class Field> void visit_sample(SampleType& s, const std::string& group, Field&& field) {
   const auto one = [&](const char* name, const char* units, const char* description, auto& value) {
@@ -56,6 +57,7 @@ template <class CheckpointType, class Field> void visit(CheckpointType& checkpoi
   field("/recording/snapshots", "1", "taken", std::size_t{1}, recording.position.snapshots);
   field("/recording/wall_time", "s", "from t = 0", std::size_t{1}, recording.wall_time);
   field("/recording/packing_wall_time", "s", "before t = 0", std::size_t{1}, recording.packing_wall_time);
+  field("/recording/pouring", "1", "the state is of granules being poured", std::size_t{1}, recording.pouring);
   visit_sample(recording.initial, "/recording/initial/", field);
   visit_sample(recording.latest, "/recording/latest/", field);
 }
@@ -147,6 +149,20 @@ CheckpointFiles::CheckpointFiles(const fs::path& folder)
     : newest(folder / "checkpoint.h5"), previous(folder / "checkpoint.previous.h5"),
       next(folder / "checkpoint.next.h5") {}
 
+bool CheckpointFiles::any() const {
+  std::error_code error;
+  return fs::exists(next, error) || fs::exists(newest, error) || fs::exists(previous, error);
+}
+
+void CheckpointFiles::settle() {
+  std::error_code error;
+  if (!fs::exists(next, error)) return;
+  if (fs::exists(newest, error) && !std::exchange(newest_is_damaged, false)) move(newest, previous);
+  dawdle();
+  move(next, newest);
+  sync_folder(newest.parent_path());
+}
+
 void CheckpointFiles::remove() const {
   for (const fs::path& file : {next, newest, previous}) {
     std::error_code error;
@@ -155,7 +171,7 @@ void CheckpointFiles::remove() const {
   }
 }
 
-void write_checkpoint(const CheckpointFiles& files, const Checkpoint& checkpoint) {
+void write_checkpoint(CheckpointFiles& files, const Checkpoint& checkpoint) {
   hdf5::File file = hdf5::File::create(files.next);
   file.set_attribute("/", "program", std::string("grandamp"));
   file.set_attribute("/", "content", std::string("checkpoint"));
@@ -175,18 +191,14 @@ void write_checkpoint(const CheckpointFiles& files, const Checkpoint& checkpoint
   dawdle();
   file.close();
   dawdle();
-  std::error_code error;
-  if (fs::exists(files.newest, error)) move(files.newest, files.previous);
-  dawdle();
-  move(files.next, files.newest);
-  sync_folder(files.newest.parent_path());
+  files.settle();
 }
 
 Checkpoint read_checkpoint(const fs::path& path) {
   const hdf5::SealReport seal = hdf5::check_seal(path);
   if (seal.state != hdf5::SealReport::State::whole) throw FileError(path.string() + ": damaged: " + seal.what);
   try {
-    const hdf5::File file = hdf5::File::open(path);
+    const hdf5::File file = hdf5::File::open_at_risk(path);
     if (file.text_attribute("/", "content") != "checkpoint")
       throw FileError(path.string() + ": is no checkpoint, though it is a file of grandamp");
     if (const double format = file.double_attribute("/", "format_version"); format != format_version)
@@ -221,6 +233,7 @@ FoundCheckpoint find_checkpoint(const CheckpointFiles& files) {
     } catch (const OtherFormat&) {
       throw;
     } catch (const FileError& what) {
+      if (file == files.newest) found.newest_is_damaged = true;
       found.damaged.emplace_back(what.what());
     }
   }

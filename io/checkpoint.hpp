@@ -19,6 +19,7 @@ struct RecordingState {
   Sample latest;                  ///< the last row of the histories
   double wall_time = 0.0;         ///< from t = 0, of all parts of the run, s
   double packing_wall_time = 0.0; ///< before t = 0, s
+  bool pouring = false;           ///< still before t = 0: the state is of granules being poured
 };
 
 struct Checkpoint {
@@ -37,14 +38,19 @@ struct CheckpointFiles {
   std::filesystem::path newest;   ///< checkpoint.h5
   std::filesystem::path previous; ///< checkpoint.previous.h5
   std::filesystem::path next;     ///< checkpoint.next.h5: whole, but not yet in its place; only a kill leaves it
+  bool newest_is_damaged = false; ///< it is then replaced, and must not take the place of its whole predecessor
 
+  /// Whether there is any of them.
+  bool any() const;
   /// Removes all of them. Throws FileError.
   void remove() const;
+  /// Moves `next`, if a kill left it, to where it belongs. Throws FileError.
+  void settle();
 };
 
 /// Writes a new checkpoint beside the others, synced, then moves each up a place. Throws FileError; the others are then
 /// as they were.
-void write_checkpoint(const CheckpointFiles& files, const Checkpoint& checkpoint);
+void write_checkpoint(CheckpointFiles& files, const Checkpoint& checkpoint);
 
 /// A whole checkpoint of another format: of an earlier or later program.
 class OtherFormat : public FileError {
@@ -60,6 +66,7 @@ struct FoundCheckpoint {
   Checkpoint checkpoint;
   std::filesystem::path file;
   std::vector<std::string> damaged; ///< newer ones that could not be used: what is wrong with each
+  bool newest_is_damaged = false;   ///< files.newest is among those
 };
 
 /// The newest whole one. Throws FileError if there is none, OtherFormat if it is of another format.

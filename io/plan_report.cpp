@@ -116,6 +116,11 @@ std::string plan_text(const Plan& plan, const std::string& isa, int threads) {
                            plan.impact_speed, plan.impact_speed_estimated ? " (estimated from the scene)" : ""));
   }
   sheet.line("time step", fmt::format("{:.6g} s: {}", plan.time_step, plan.time_step_reason));
+  if (plan.step_choice) {
+    sheet.line("error",
+               "of a contact: what its velocities and spins are off by, as the root of an energy over the impact's; "
+               "the mean square over all phases of entry, of the worst contact and impact");
+  }
   sheet.line("steps", fmt::format("{} for {:.6g} s", plan.steps, plan.time_step * static_cast<double>(plan.steps)));
   if (plan.scene.structure) {
     sheet.line("statistics", fmt::format("from {:.6g} s to {:.6g} s", plan.window[0], plan.window[1]));
@@ -143,6 +148,13 @@ std::string plan_json(const Plan& plan, const std::string& isa, int threads) {
   json["time_step"] = plan.time_step;
   json["time_step_reason"] = plan.time_step_reason;
   json["steps"] = plan.steps;
+  if (const auto& choice = plan.step_choice) {
+    json["step_choice"] = {{"asked", choice->asked},
+                           {"error", choice->error},
+                           {"contact", choice->contact},
+                           {"steps_per_contact", choice->steps_per_contact},
+                           {"integrator", choice->integrator == Integrator::verlet ? "verlet" : "leapfrog"}};
+  }
   json["contact_duration"] = plan.contact_duration;
   json["impact_speed"] = plan.impact_speed;
   json["impact_speed_estimated"] = plan.impact_speed_estimated;

@@ -9,6 +9,16 @@
 #include <cstdio>
 
 namespace grandamp {
+namespace {
+
+/// In place of the line before. A terminal that went away is no reason to end a run: failures are not looked at.
+void show_line(const std::string& line) {
+  const std::string text = "\r" + line + "\x1b[K";
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+} // namespace
 
 std::string readable_seconds(double seconds) {
   if (!std::isfinite(seconds)) return "?";
@@ -46,8 +56,7 @@ void ProgressPrinter::show(const RunProgress& progress) {
   const auto now = std::chrono::steady_clock::now();
   if (style_ == Style::terminal) {
     if (on_screen_ && now - last_ < std::chrono::milliseconds(90)) return;
-    fmt::print(stderr, "\r{}\x1b[K", progress_line(progress));
-    std::fflush(stderr);
+    show_line(progress_line(progress));
     on_screen_ = true;
     last_ = now;
   } else if (style_ == Style::log && now - last_ >= std::chrono::minutes(1)) {
@@ -58,8 +67,7 @@ void ProgressPrinter::show(const RunProgress& progress) {
 
 void ProgressPrinter::clear() {
   if (!on_screen_) return;
-  fmt::print(stderr, "\r\x1b[K");
-  std::fflush(stderr);
+  show_line("");
   on_screen_ = false;
 }
 

@@ -46,6 +46,7 @@ Recorder::Recorder(Simulation& simulation, ResultsWriter& results, const RunScen
   const auto granules = static_cast<std::int64_t>(plan_.granules);
   steps_between_looks_ = std::clamp<std::int64_t>(200'000 / std::max<std::int64_t>(granules, 1), 1, 1000);
   next_checkpoint_ = setup_.output.checkpoint_interval;
+  checkpoint_due_ = setup_.checkpoint_first;
   record.plan = &plan_;
   record.isa = simulation.isa();
   record.threads = simulation.threads();
@@ -66,7 +67,8 @@ void Recorder::go() {
   try {
     step_to_the_end();
     // Before the end is recorded: whoever goes on further from here has then nothing to take back.
-    if (record.status == RunStatus::done && setup_.output.checkpoint_interval > 0.0) write_checkpoint_now();
+    if (record.status == RunStatus::done && (setup_.output.checkpoint_interval > 0.0 || setup_.checkpoints.any()))
+      write_checkpoint_now();
     record.end = simulation_.sample();
     if (schedule_.due(simulation_.step_number())) keep(record.end);
     take_snapshot_if_due();
@@ -175,10 +177,16 @@ void Recorder::look_at_the_clock() {
     tell_warnings();
     tell_progress();
   }
-  timed(profile(), Phase::output, 0, [&] { results_.fold_if_due(); });
+  timed(profile(), Phase::output, 0, [&] { results_.fold_if_due([this] { return asked_for_something(); }); });
   const double since_begun = seconds_since(setup_.begun);
-  checkpoint_due_ = setup_.output.checkpoint_interval > 0.0 && since_begun >= next_checkpoint_;
+  checkpoint_due_ |= setup_.output.checkpoint_interval > 0.0 && since_begun >= next_checkpoint_;
   out_of_time_ = options_.max_wall > 0.0 && since_begun >= options_.max_wall;
+}
+
+bool Recorder::asked_for_something() {
+  if (options_.stop_requested && options_.stop_requested()) return true;
+  checkpoint_due_ |= options_.checkpoint_requested && options_.checkpoint_requested();
+  return checkpoint_due_;
 }
 
 void Recorder::tell_warnings() {

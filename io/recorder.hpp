@@ -43,6 +43,7 @@ struct RecorderSetup {
   WallClock::time_point begun;             ///< this part of the run, packing included
   double packing_wall_time = 0.0;          ///< s
   const RecordingState* earlier = nullptr; ///< of the parts before this one
+  bool checkpoint_first = false;           ///< what was asked of this part is to outlive a kill
 };
 
 class Recorder {
@@ -65,6 +66,7 @@ private:
   void keep(const Sample& sample);
   void take_snapshot_if_due();
   void look_at_the_clock();
+  bool asked_for_something(); ///< while a fold goes on, which may take as long as the results are large
   void tell_warnings();
   void tell_progress();
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }

@@ -74,18 +74,35 @@ RecordLog unfold_rows(const fs::path& results, std::size_t columns, std::int64_t
   return log;
 }
 
-RecordLog reopen_rows(const fs::path& results, std::size_t columns, std::int64_t rows) {
+RecordLog open_rows(const fs::path& results, std::size_t columns, std::int64_t rows) {
   const fs::path path = rows_path(results);
-  if (is_there(path)) {
-    RecordLog log = RecordLog::open(path, history_kind, columns * sizeof(double));
-    if (log.count() < rows) {
-      throw FileError(path.string() + ": holds " + std::to_string(log.count()) + " whole rows; to go on takes " +
-                      std::to_string(rows));
-    }
-    log.cut(rows);
-    return log;
+  if (!is_there(path)) return unfold_rows(results, columns, rows);
+  RecordLog log = RecordLog::open(path, history_kind, columns * sizeof(double));
+  if (log.count() < rows) {
+    throw FileError(path.string() + ": holds " + std::to_string(log.count()) + " whole rows; to go on takes " +
+                    std::to_string(rows));
   }
-  return unfold_rows(results, columns, rows);
+  return log;
+}
+
+std::vector<double> row_of(const Sample& sample, std::size_t columns) {
+  std::vector<double> row(columns);
+  for (std::size_t c = 0; c < columns; ++c) row[c] = history_columns[c].value(sample);
+  return row;
+}
+
+RecordLog reopen_rows(const fs::path& results, std::size_t columns, std::int64_t rows, const Sample* latest) {
+  RecordLog log = open_rows(results, columns, rows);
+  if (rows > 0 && latest != nullptr) {
+    const std::vector<double> expected = row_of(*latest, columns);
+    std::vector<double> there(columns);
+    log.read(rows - 1, 1, there.data());
+    if (std::memcmp(there.data(), expected.data(), columns * sizeof(double)) != 0)
+      throw FileError(log.path().string() + ": row " + std::to_string(rows - 1) +
+                      " is not the one that the checkpoint remembers: they are of different runs");
+  }
+  log.cut(rows);
+  return log;
 }
 
 RecordLog unfold_snapshots(const fs::path& results, std::int64_t count) {
@@ -133,7 +150,6 @@ struct ResultsWriter::State {
   std::vector<double> snapshot_times;
   std::size_t granules = 0; ///< in a snapshot
   std::optional<Snapshot> final_granules;
-  std::vector<double> row;
   bool new_since_fold = false;
   Clock::time_point folded;
   double fold_cost = 0.0; ///< s, of the last one
@@ -141,7 +157,6 @@ struct ResultsWriter::State {
   State(fs::path path, std::string scene, RecordLog log, std::optional<RecordLog> earlier_snapshots)
       : results(std::move(path)), scene_text(std::move(scene)), rows(std::move(log)),
         snapshots(std::move(earlier_snapshots)) {
-    row.resize(rows.record_bytes() / sizeof(double));
     for (std::int64_t k = 0; snapshots && k < snapshots->count(); ++k) {
       const Snapshot snapshot = read_snapshot(*snapshots, k);
       snapshot_times.push_back(snapshot.time);
@@ -149,7 +164,7 @@ struct ResultsWriter::State {
     }
   }
 
-  void fold() {
+  void fold(const std::function<bool()>& abandon = {}) {
     const Clock::time_point start = Clock::now();
     rows.flush();
     if (snapshots) snapshots->flush();
@@ -158,6 +173,7 @@ struct ResultsWriter::State {
     run.rows = &rows;
     run.snapshots = snapshots ? &*snapshots : nullptr;
     run.final_granules = final_granules ? &*final_granules : nullptr;
+    run.abandon = abandon;
     write_results_file(results, run);
     if (snapshots)
       write_xdmf(xdmf_path(results), results.filename().string(), snapshot_times, granules);
@@ -180,9 +196,9 @@ ResultsWriter::ResultsWriter(const fs::path& results, const std::string& scene_t
           reopen_snapshots(results, 0))) {}
 
 ResultsWriter ResultsWriter::go_on(const fs::path& results, const std::string& scene_text, bool ledger,
-                                   const ResultsPosition& from) {
+                                   const ResultsPosition& from, const Sample* latest) {
   return ResultsWriter(std::make_unique<State>(results, scene_text,
-                                               reopen_rows(results, columns_with(ledger), from.rows),
+                                               reopen_rows(results, columns_with(ledger), from.rows, latest),
                                                reopen_snapshots(results, from.snapshots)));
 }
 
@@ -192,8 +208,7 @@ ResultsWriter& ResultsWriter::operator=(ResultsWriter&&) noexcept = default;
 
 void ResultsWriter::append(const Sample& sample) {
   State& state = *state_;
-  for (std::size_t c = 0; c < state.row.size(); ++c) state.row[c] = history_columns[c].value(sample);
-  state.rows.append(state.row.data());
+  state.rows.append(row_of(sample, state.rows.record_bytes() / sizeof(double)).data());
   state.new_since_fold = true;
 }
 
@@ -222,10 +237,15 @@ void ResultsWriter::fold() {
   state_->fold();
 }
 
-void ResultsWriter::fold_if_due() {
+void ResultsWriter::fold_if_due(const std::function<bool()>& abandon) {
   if (!state_->new_since_fold) return;
   const double since = std::chrono::duration<double>(Clock::now() - state_->folded).count();
-  if (since >= std::max(least_between_folds, folds_apart * state_->fold_cost)) state_->fold();
+  if (since < std::max(least_between_folds, folds_apart * state_->fold_cost)) return;
+  try {
+    state_->fold(abandon);
+  } catch (const FoldAbandoned&) {
+    state_->folded = Clock::now();
+  }
 }
 
 void ResultsWriter::write_final(const GranuleTable& granules, double time) {

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,9 +32,10 @@ public:
   /// `ledger`: whether samples carry the energy ledger, and so its columns.
   ResultsWriter(const std::filesystem::path& results, const std::string& scene_text, bool ledger);
   /// Goes on with a run that was stopped, killed or finished: what lies after `from` is cut off, in results.h5 too.
-  /// Throws FileError also if less than that is there.
+  /// `latest`, if given, is the last row before that. Throws FileError also if less than that is there, or the last row
+  /// is another: the results are then of another run than the checkpoint.
   static ResultsWriter go_on(const std::filesystem::path& results, const std::string& scene_text, bool ledger,
-                             const ResultsPosition& from);
+                             const ResultsPosition& from, const Sample* latest = nullptr);
   /// Leaves everything as a kill would: the last fold and the logs.
   ~ResultsWriter();
   ResultsWriter(ResultsWriter&&) noexcept;
@@ -52,8 +54,8 @@ public:
   void fold();
   /// The same, if there is something new and folds have cost less than 1 % of the time so far; at most every 5 s.
   /// Every fold writes everything anew, so they grow rarer as results grow: a run's results.h5 lags behind the run by
-  /// about a hundred times what it takes to write.
-  void fold_if_due();
+  /// about a hundred times what it takes to write. `abandon` is asked on the way: once true the fold is given up.
+  void fold_if_due(const std::function<bool()>& abandon = {});
   /// The granules at the end, by id; `time` in seconds. Written by close().
   void write_final(const GranuleTable& granules, double time);
   /// Folds, and removes the logs.

@@ -13,7 +13,7 @@ namespace {
 constexpr std::int64_t format_version = 2;
 constexpr std::size_t rows_per_block = 4096;
 
-void write_history(hdf5::File& file, const RecordLog& rows) {
+void write_history(hdf5::File& file, const RecordLog& rows, const std::function<void()>& pulse) {
   file.create_group("/history");
   std::vector<hdf5::Handle> columns;
   for (const HistoryColumn& column : history_columns) {
@@ -34,6 +34,7 @@ void write_history(hdf5::File& file, const RecordLog& rows) {
       file.append(columns[c], static_cast<std::size_t>(first), values);
     }
     first += count;
+    pulse();
   }
   // The names that a force on the structure and one on the wall go by elsewhere.
   file.link("/history/excitation", "/history/force");
@@ -43,13 +44,16 @@ void write_history(hdf5::File& file, const RecordLog& rows) {
 } // namespace
 
 void write_results_file(const std::filesystem::path& path, const RecordedRun& run) {
+  const auto pulse = [&run] {
+    if (run.abandon && run.abandon()) throw FoldAbandoned{};
+  };
   hdf5::File file = hdf5::File::create(path);
   file.set_attribute("/", "program", std::string("grandamp"));
   file.set_attribute("/", "version", version());
   file.set_attribute("/", "format_version", format_version);
   file.write("/scene", *run.scene_text);
-  write_history(file, *run.rows);
-  if (run.snapshots != nullptr && run.snapshots->count() > 0) write_snapshots(file, *run.snapshots);
+  write_history(file, *run.rows, pulse);
+  if (run.snapshots != nullptr && run.snapshots->count() > 0) write_snapshots(file, *run.snapshots, pulse);
   if (run.final_granules != nullptr) write_final_granules(file, *run.final_granules);
   file.close();
 }

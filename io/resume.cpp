@@ -1,3 +1,4 @@
+#include "io/preparation.hpp"
 #include "io/recorder.hpp"
 #include "io/results.hpp"
 #include "io/run.hpp"
@@ -69,12 +70,24 @@ std::string isa_for(const Checkpoint& checkpoint, const std::string& asked) {
   return other;
 }
 
-/// Whether the summary in the folder tells of the run up to this step, done.
-bool told_to_the_end(const std::filesystem::path& summary, std::int64_t steps) {
+/// The summary in the folder if it tells of a run that is done, else null.
+nlohmann::json summary_of_done(const std::filesystem::path& summary) {
   std::ifstream file(summary);
-  const nlohmann::json told = nlohmann::json::parse(file, nullptr, false);
-  return told.is_object() && told.value("status", nlohmann::json()) == "done" &&
-         told.value("steps", nlohmann::json()) == steps;
+  nlohmann::json told = nlohmann::json::parse(file, nullptr, false);
+  const bool done = told.is_object() && told.value("status", nlohmann::json()) == "done";
+  return done ? told : nlohmann::json();
+}
+
+/// A run that was done before anyone asked to resume it.
+RunResult done_before(const std::filesystem::path& summary, std::int64_t steps, double time) {
+  RunResult result;
+  result.status = RunStatus::done_before;
+  result.steps = steps;
+  result.time = time;
+  std::ifstream file(summary);
+  result.summary.assign(std::istreambuf_iterator<char>(file), {});
+  result.message = fmt::format("the run is finished, at {:.9g} s; --set time.duration=... goes on further", time);
+  return result;
 }
 
 /// Moves the end of the run to where the scene now says.
@@ -106,10 +119,9 @@ void change_duration(Simulation& simulation, const Scene& scene, std::vector<Pro
 /// A run's folder, checkpoint and scene, held against what is asked of it.
 class Resumption {
 public:
-  Resumption(const std::filesystem::path& folder, const std::vector<std::string>& overrides,
-             const RunSceneOptions& options)
-      : begun_(WallClock::now()), options_(options), asked_(overrides), files_(RunFolder::of_run(folder)),
-        found_(find_checkpoint(files_.checkpoints())), name_(files_.scene().string()) {
+  Resumption(RunFolder& files, const std::vector<std::string>& overrides, const RunSceneOptions& options)
+      : begun_(WallClock::now()), options_(options), asked_(overrides), files_(files),
+        checkpoints_(files.checkpoints()), found_(find_checkpoint(checkpoints_)), name_(files_.scene().string()) {
     const Checkpoint& checkpoint = found_.checkpoint;
     if (options.warning)
       for (const std::string& damaged : found_.damaged)
@@ -121,38 +133,21 @@ public:
     refuse_changes_of_the_past(overrides);
     all_overrides_ = checkpoint.overrides;
     all_overrides_.insert(all_overrides_.end(), overrides.begin(), overrides.end());
+    checkpoints_.newest_is_damaged = found_.newest_is_damaged;
+    if (found_.file == checkpoints_.next) checkpoints_.settle();
   }
 
   RunResult go() {
-    const Checkpoint& checkpoint = found_.checkpoint;
-    const SceneDocument original = read_scene_text(checkpoint.scene, name_);
+    const SceneDocument original = read_scene_text(found_.checkpoint.scene, name_);
     const SceneDocument present =
-        all_overrides_.empty() ? original : read_scene_text(checkpoint.scene, name_, all_overrides_);
-    Simulation simulation = restored(original);
-    std::vector<Problem> notes = present.notes;
-    if (sets(asked_, "time.duration")) change_duration(simulation, present.scene, notes);
-    if (options_.notes && !notes.empty()) options_.notes(notes);
-    if (simulation.finished() && told_to_the_end(files_.summary(), simulation.step_number())) return done_before();
-
-    ResultsWriter results = ResultsWriter::go_on(files_.results(), present.text, simulation.plan().scene.output.energy,
-                                                 checkpoint.recording.position);
-    if (!asked_.empty()) replace_file(files_.scene(), present.text);
-    return record_run(simulation, results, files_, options_,
-                      {.output = present.scene.output,
-                       .checkpoints = files_.checkpoints(),
-                       .scene_text = checkpoint.scene,
-                       .overrides = all_overrides_,
-                       .begun = begun_,
-                       .earlier = &checkpoint.recording});
+        all_overrides_.empty() ? original : read_scene_text(found_.checkpoint.scene, name_, all_overrides_);
+    return found_.checkpoint.recording.pouring ? pour_on(original, present) : go_on(original, present);
   }
 
 private:
-  Simulation restored(const SceneDocument& original) const {
-    RunOptions run;
-    run.threads = options_.threads;
-    run.isa = isa_for(found_.checkpoint, options_.isa);
+  template <class Make> auto with_state(const SceneDocument& original, const Make& make) const {
     try {
-      return Simulation(original.scene, found_.checkpoint.state, run);
+      return make();
     } catch (const StateError& error) {
       throw FileError(fmt::format("{}: cannot go on from it by the same bits: {}", found_.file.string(), error.what()));
     } catch (const SceneError& error) {
@@ -160,33 +155,105 @@ private:
     }
   }
 
-  RunResult done_before() const {
-    const RunState& state = found_.checkpoint.state;
-    RunResult result;
-    result.status = RunStatus::done_before;
-    result.steps = state.step_number;
-    result.time = static_cast<double>(state.step_number) * state.time_step;
-    std::ifstream summary(files_.summary());
-    result.summary.assign(std::istreambuf_iterator<char>(summary), {});
-    result.message =
-        fmt::format("the run is finished, at {:.9g} s; --set time.duration=... goes on further", result.time);
-    return result;
+  RunResult go_on(const SceneDocument& original, const SceneDocument& present) {
+    const Checkpoint& checkpoint = found_.checkpoint;
+    Simulation simulation = with_state(original, [&] {
+      RunOptions run;
+      run.threads = options_.threads;
+      run.isa = isa_for(checkpoint, options_.isa);
+      return Simulation(original.scene, checkpoint.state, run);
+    });
+    std::vector<Problem> notes = present.notes;
+    if (sets(asked_, "time.duration")) change_duration(simulation, present.scene, notes);
+    tell(notes);
+    const nlohmann::json done = summary_of_done(files_.summary());
+    if (simulation.finished() && done.is_object() && done.value("steps", nlohmann::json()) == simulation.step_number())
+      return done_before(files_.summary(), simulation.step_number(), simulation.time());
+
+    files_.forget_summary();
+    ResultsWriter results = ResultsWriter::go_on(files_.results(), present.text, simulation.plan().scene.output.energy,
+                                                 checkpoint.recording.position, &checkpoint.recording.latest);
+    if (!asked_.empty()) replace_file(files_.scene(), present.text);
+    RecorderSetup setup = setup_with(present);
+    setup.earlier = &checkpoint.recording;
+    setup.checkpoint_first = !asked_.empty();
+    return record_run(simulation, results, files_, options_, std::move(setup));
+  }
+
+  RunResult pour_on(const SceneDocument& original, const SceneDocument& present) {
+    const Checkpoint& checkpoint = found_.checkpoint;
+    if (!asked_.empty()) replace_file(files_.scene(), present.text);
+    RecorderSetup setup = setup_with(present);
+    setup.packing_wall_time = checkpoint.recording.packing_wall_time;
+    Preparation preparation = with_state(original, [&] {
+      return prepare(original, isa_for(checkpoint, options_.isa), files_, options_, setup, &checkpoint);
+    });
+    if (!preparation.simulation) return preparation.stopped;
+    std::vector<Problem> notes = present.notes;
+    if (sets(all_overrides_, "time.duration")) change_duration(*preparation.simulation, present.scene, notes);
+    tell(notes);
+    setup.checkpoint_first = !all_overrides_.empty();
+    return record_from_the_start(preparation, present.text, files_, options_, std::move(setup));
+  }
+
+  RecorderSetup setup_with(const SceneDocument& present) const {
+    return {.output = present.scene.output,
+            .checkpoints = checkpoints_,
+            .scene_text = found_.checkpoint.scene,
+            .overrides = all_overrides_,
+            .begun = begun_};
+  }
+
+  void tell(const std::vector<Problem>& notes) const {
+    if (options_.notes && !notes.empty()) options_.notes(notes);
   }
 
   WallClock::time_point begun_;
   const RunSceneOptions& options_;
   const std::vector<std::string>& asked_;
-  RunFolder files_;
+  RunFolder& files_;
+  CheckpointFiles checkpoints_;
   FoundCheckpoint found_;
   std::string name_;
   std::vector<std::string> all_overrides_;
 };
 
+/// A run that was killed before its first checkpoint has lost nothing but that time: it starts anew.
+RunResult start_anew(RunFolder& files, const std::vector<std::string>& overrides, const RunSceneOptions& options) {
+  std::error_code error;
+  if (!std::filesystem::exists(files.scene(), error))
+    throw FileError(files.scene().parent_path().string() +
+                    ": holds no checkpoint, so there is nothing to go on from; start the run anew");
+  refuse_changes_of_the_past(overrides);
+  if (const nlohmann::json done = summary_of_done(files.summary()); done.is_object()) {
+    if (!overrides.empty())
+      throw FileError(files.scene().parent_path().string() +
+                      ": the run is finished and holds no checkpoint to go on further from");
+    return done_before(files.summary(), done.value("steps", std::int64_t{0}), done.value("duration", 0.0));
+  }
+  const SceneDocument document = read_scene(files.scene(), overrides);
+  if (options.warning)
+    options.warning(files.scene().parent_path().string() +
+                    ": the run was stopped before its first checkpoint, and starts anew");
+  files.forget_summary();
+  if (!overrides.empty()) replace_file(files.scene(), document.text);
+  RecorderSetup setup{.output = document.scene.output,
+                      .checkpoints = files.checkpoints(),
+                      .scene_text = document.text,
+                      .overrides = {},
+                      .begun = WallClock::now()};
+  Preparation preparation = prepare(document, options.isa, files, options, setup);
+  if (!preparation.simulation) return preparation.stopped;
+  return record_from_the_start(preparation, document.text, files, options, std::move(setup));
+}
+
 } // namespace
 
 RunResult resume_run(const std::filesystem::path& folder, const std::vector<std::string>& overrides,
                      const RunSceneOptions& options) {
-  return Resumption(folder, overrides, options).go();
+  RunFolder files = RunFolder::of_run(folder);
+  if (!files.checkpoints().any()) return start_anew(files, overrides, options);
+  return Resumption(files, overrides, options).go();
 }
 
 } // namespace grandamp

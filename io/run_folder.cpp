@@ -16,9 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* probe_name = ".grandamp-write-test";
+
+void remove_earlier(const fs::path& file) {
+  std::error_code error;
+  fs::remove(file, error);
+  if (error) throw FileError(file.string() + ": cannot remove the file of the earlier run: " + error.message());
+}
+
 /// Access rights alone do not tell (root, read-only and full file systems): try it.
 void try_to_write(const fs::path& folder) {
-  const fs::path probe = folder / ".grandamp-write-test";
+  const fs::path probe = folder / probe_name;
   try {
     TextFile file(probe);
     file.write("a line\n");
@@ -53,6 +61,7 @@ RunFolder::RunFolder(fs::path folder, bool force) : folder_(std::move(folder)) {
   try {
     lock();
     try_to_write(folder_);
+    remove_leftovers();
   } catch (...) {
     abandon();
     unlock();
@@ -70,10 +79,11 @@ RunFolder RunFolder::of_run(fs::path folder) {
   return RunFolder(std::move(folder), Existing{});
 }
 
-RunFolder::RunFolder(fs::path folder, Existing) : folder_(std::move(folder)) {
+RunFolder::RunFolder(fs::path folder, Existing) : folder_(std::move(folder)), begun_(true) {
   try {
     lock();
     try_to_write(folder_);
+    remove_leftovers();
   } catch (...) {
     unlock();
     throw;
@@ -91,14 +101,27 @@ void RunFolder::unlock() noexcept {
   if (locked_ >= 0) ::close(std::exchange(locked_, -1));
 }
 
-void RunFolder::begin(const std::string& scene_text) {
-  for (const fs::path& file : {summary(), results()}) {
-    std::error_code error;
-    fs::remove(file, error);
-    if (error) throw FileError(file.string() + ": cannot remove the file of the earlier run: " + error.message());
+void RunFolder::remove_leftovers() noexcept {
+  for (const char* name : {"checkpoint.next.h5.new", "results.h5.new", "history.part.new", "snapshots.part.new",
+                           "snapshots.xdmf.new", "scene.toml.new", "summary.json.new", "trace.json.new", probe_name}) {
+    std::error_code ignored;
+    fs::remove(folder_ / name, ignored);
   }
+}
+
+void RunFolder::begin(const std::string& scene_text) {
+  if (begun_) return;
+  // The checkpoints first: without results of their own they are of no use, results without them are.
   checkpoints().remove();
+  forget_summary();
+  remove_earlier(results());
   replace_file(scene(), scene_text);
+  begun_ = true;
+}
+
+void RunFolder::forget_summary() {
+  remove_earlier(summary());
+  remove_earlier(trace());
 }
 
 void RunFolder::abandon() noexcept {

@@ -26,8 +26,11 @@ public:
   std::filesystem::path trace() const { return folder_ / "trace.json"; }
   CheckpointFiles checkpoints() const { return CheckpointFiles(folder_); }
 
-  /// Removes the files of an earlier run, and nothing else, and writes scene.toml. Throws FileError.
+  /// Removes the files of an earlier run, and nothing else, and writes scene.toml: once, and never in the folder of a
+  /// run that goes on. Throws FileError.
   void begin(const std::string& scene_text);
+  /// A run that is to change what summary.json and trace.json tell of must not leave them if it is killed.
+  void forget_summary();
   /// Removes the folder again if it was made for this run and is empty.
   void abandon() noexcept;
 
@@ -36,9 +39,11 @@ private:
   RunFolder(std::filesystem::path folder, Existing);
   void lock();
   void unlock() noexcept;
+  void remove_leftovers() noexcept; ///< of writing that a kill cut short
 
   std::filesystem::path folder_;
   bool made_ = false;
+  bool begun_ = false;
   int locked_ = -1; ///< file descriptor of the folder
 };
 

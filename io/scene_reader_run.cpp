@@ -14,7 +14,8 @@ constexpr double most_snapshots = 1e6;
 void read_step(TableReader& table, TimeControl& time) {
   const std::string_view key = table.one_of({"step", "steps_per_contact", "error"});
   if (key == "error") {
-    table.not_yet("error", "a step chosen by its error", "steps_per_contact, or step in s");
+    time.error = table.number(key, {0.0, 0.5, false, true});
+    time.integrator_free = !table.has("integrator");
   } else if (key == "steps_per_contact") {
     time.steps_per_contact = table.number(key, {1.0, 1e6, true, true}).value_or(time.steps_per_contact);
   } else if (key == "step") {
@@ -72,7 +73,9 @@ void read_time(TableReader& root, Scene& scene) {
   scene.time.integrator =
       table.choice<Integrator>("integrator", {{"leapfrog", Integrator::leapfrog}, {"verlet", Integrator::verlet}})
           .value_or(Integrator::leapfrog);
-  table.choice<bool>("precision", {{"double", true}}, {"mixed"});
+  scene.time.precision =
+      table.choice<Precision>("precision", {{"double", Precision::full}, {"mixed", Precision::mixed}})
+          .value_or(Precision::full);
   table.finish();
 }
 

@@ -23,19 +23,19 @@ void on_signal(int signal) {
 SignalWatch::SignalWatch() {
   stop = 0;
   checkpoint = 0;
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, &old_interrupt_);
-  sigaction(SIGTERM, &action, &old_terminate_);
-  sigaction(SIGUSR1, &action, &old_user_);
+  for (std::size_t k = 0; k < watched_.size(); ++k) {
+    sigaction(watched_[k], nullptr, &old_[k]);
+    if (watched_[k] == SIGHUP && old_[k].sa_handler == SIG_IGN) continue;
+    struct sigaction action {};
+    action.sa_handler = watched_[k] == SIGPIPE ? SIG_IGN : on_signal;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(watched_[k], &action, nullptr);
+  }
 }
 
 SignalWatch::~SignalWatch() {
-  sigaction(SIGINT, &old_interrupt_, nullptr);
-  sigaction(SIGTERM, &old_terminate_, nullptr);
-  sigaction(SIGUSR1, &old_user_, nullptr);
+  for (std::size_t k = 0; k < watched_.size(); ++k) sigaction(watched_[k], &old_[k], nullptr);
 }
 
 bool SignalWatch::stop_requested() noexcept {

@@ -1,13 +1,15 @@
 // What the system asks of a run by signals.
 #pragma once
 
+#include <array>
 #include <csignal>
 
 namespace grandamp {
 
-/// While it lives SIGTERM and SIGINT ask for a checkpoint and an end, SIGUSR1 for a checkpoint alone. A SIGINT after
-/// either of the first two ends the program at once, with status 130: whoever waits at a terminal need not wait.
-/// At most one lives at a time.
+/// While it lives SIGTERM, SIGINT and SIGHUP (a terminal that goes away, unless nohup has it ignored) ask for a
+/// checkpoint and an end, SIGUSR1 for a checkpoint alone. A SIGINT after any of the first three ends the program at
+/// once, with status 130: whoever waits at a terminal need not wait. SIGPIPE is ignored: a reader of messages that
+/// dies must not take hours of work with it. At most one lives at a time.
 class SignalWatch {
 public:
   SignalWatch();
@@ -20,9 +22,8 @@ public:
   static bool take_checkpoint_request() noexcept;
 
 private:
-  struct sigaction old_interrupt_ {};
-  struct sigaction old_terminate_ {};
-  struct sigaction old_user_ {};
+  static constexpr std::array watched_{SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGPIPE};
+  std::array<struct sigaction, watched_.size()> old_{};
 };
 
 } // namespace grandamp

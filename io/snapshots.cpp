@@ -141,7 +141,7 @@ Snapshot read_snapshot(const RecordLog& log, std::int64_t index) {
   return unpack(record);
 }
 
-void write_snapshots(hdf5::File& file, const RecordLog& log) {
+void write_snapshots(hdf5::File& file, const RecordLog& log, const std::function<void()>& pulse) {
   file.create_group("/snapshots");
   std::vector<double> times;
   for (std::int64_t k = 0; k < log.count(); ++k) {
@@ -161,6 +161,7 @@ void write_snapshots(hdf5::File& file, const RecordLog& log) {
     write(file, group, speed, speeds_of(table));
     write(file, group, contacts, table.contacts);
     times.push_back(snapshot.time);
+    pulse();
   }
   write(file, "/snapshots", {"time", "s", "of each snapshot"}, times);
 }

@@ -6,6 +6,7 @@
 #include "solver/simulation.hpp"
 
 #include <cstddef>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -24,8 +25,9 @@ Snapshot unpack(const std::vector<std::byte>& record);
 /// One of a log's; throws FileError.
 Snapshot read_snapshot(const RecordLog& log, std::int64_t index);
 
-/// /snapshots, from the log: flushed, with at least one. Takes the memory of two snapshots. Throws FileError.
-void write_snapshots(hdf5::File& file, const RecordLog& log);
+/// /snapshots, from the log: flushed, with at least one. Takes the memory of two snapshots. `pulse` is called after
+/// each. Throws FileError.
+void write_snapshots(hdf5::File& file, const RecordLog& log, const std::function<void()>& pulse);
 
 /// Of a results file; none if it has none. Throws FileError.
 std::vector<double> read_snapshot_times(const hdf5::File& file);

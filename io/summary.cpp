@@ -77,6 +77,15 @@ const char* name(RunStatus status) {
   return "";
 }
 
+Json step_choice_json(const StepChoice& choice) {
+  return {{"asked", choice.asked},
+          {"error", choice.error},
+          {"contact", choice.contact},
+          {"steps_per_contact", choice.steps_per_contact},
+          {"integrator", choice.integrator == Integrator::verlet ? "verlet" : "leapfrog"},
+          {"reason", choice.reason()}};
+}
+
 /// The duration as the scene says it where the steps add up to it but for rounding.
 double simulated(const RunRecord& record) {
   const double asked = record.plan->scene.time.duration;
@@ -112,6 +121,7 @@ std::string summary_text(const RunRecord& record) {
   summary["duration"] = simulated(record);
   summary["time_step"] = plan.time_step;
   summary["steps"] = record.steps;
+  if (plan.step_choice) summary["step_choice"] = step_choice_json(*plan.step_choice);
   summary["contact_duration"] = plan.contact_duration;
   summary["impact_speed"] = plan.impact_speed;
   summary["wall_time"] = record.wall_time;
@@ -119,7 +129,7 @@ std::string summary_text(const RunRecord& record) {
   summary["granule_steps_per_second"] = record.wall_time > 0.0 ? granule_steps / record.wall_time : 0.0;
   summary["threads"] = record.threads;
   summary["isa"] = record.isa;
-  summary["precision"] = "double";
+  summary["precision"] = plan.scene.time.precision == Precision::mixed ? "mixed" : "double";
   summary["effects"] = plan.effects;
   summary["effects_left_out"] = plan.effects_left_out;
   if (plan.scene.structure) summary["structure"] = structure_json(record);

@@ -49,7 +49,7 @@ struct PairArguments {
   GranuleArrays granules;
   const CandidatePair* pairs = nullptr;
   std::size_t count = 0;             ///< a multiple of list_padding
-  CandidatePair* touching = nullptr; ///< scratch of pair_chunk + list_padding entries
+  CandidatePair* touching = nullptr; ///< scratch of pair_chunk + contact_padding entries
   LawRow law{};                      ///< of all pairs (not with Variety::materials)
   const LawRow* laws = nullptr;      ///< populations x populations (Variety::materials)
   std::size_t populations = 1;

@@ -1,11 +1,12 @@
 #include "kernels/dispatch.hpp"
 
-#include "kernels/instantiation.hpp"
+#include "kernels/mixed_instantiation.hpp"
 
 namespace grandamp::kernels {
 
 #define GRANDAMP_DECLARE(set)                                                                                          \
   extern const KernelTable set##_none, set##_energies, set##_ledger, set##_ledger_and_energies;                        \
+  extern const MixedTable set##_mixed;                                                                                 \
   extern CandidateKernel* const set##_candidates[2];                                                                   \
   extern SplitKernel* const set##_split[2];
 GRANDAMP_DECLARE(generic)
@@ -21,21 +22,26 @@ namespace {
 
 struct InstructionSetTables {
   const KernelTable* by_observation[4];
+  const MixedTable* mixed;
   CandidateKernel* const* candidates;
   SplitKernel* const* split;
 };
 
 const InstructionSetTables generic_tables = {
     {&generic_none, &generic_energies, &generic_ledger, &generic_ledger_and_energies},
+    &generic_mixed,
     generic_candidates,
     generic_split};
 #ifdef GRANDAMP_HAVE_AVX2
 const InstructionSetTables avx2_tables = {
-    {&avx2_none, &avx2_energies, &avx2_ledger, &avx2_ledger_and_energies}, avx2_candidates, avx2_split};
+    {&avx2_none, &avx2_energies, &avx2_ledger, &avx2_ledger_and_energies}, &avx2_mixed, avx2_candidates, avx2_split};
 #endif
 #ifdef GRANDAMP_HAVE_AVX512
 const InstructionSetTables avx512_tables = {
-    {&avx512_none, &avx512_energies, &avx512_ledger, &avx512_ledger_and_energies}, avx512_candidates, avx512_split};
+    {&avx512_none, &avx512_energies, &avx512_ledger, &avx512_ledger_and_energies},
+    &avx512_mixed,
+    avx512_candidates,
+    avx512_split};
 #endif
 
 const InstructionSetTables& tables(InstructionSet set) {
@@ -95,6 +101,10 @@ const char* name(InstructionSet set) {
 }
 
 PairKernel* pair_kernel_for(InstructionSet set, ContactEffects effects) {
+  if (effects.precision == Precision::mixed) {
+    if (!has_mixed_kernel(effects)) return nullptr;
+    return tables(set).mixed->pair[static_cast<int>(effects.observation)][mixed_set(effects)];
+  }
   return table(set, effects.observation).pair[contact_set(effects)];
 }
 WallKernel* plane_kernel_for(InstructionSet set, ContactEffects effects) {

@@ -13,6 +13,7 @@ bool available(InstructionSet set);
 InstructionSet best_available();
 const char* name(InstructionSet set);
 
+/// Null: effects of mixed precision that has_mixed_kernel leaves out.
 PairKernel* pair_kernel_for(InstructionSet set, ContactEffects effects);
 WallKernel* plane_kernel_for(InstructionSet set, ContactEffects effects);
 WallKernel* side_kernel_for(InstructionSet set, ContactEffects effects);

@@ -22,11 +22,16 @@ enum class Observation {
   ledger_and_energies ///< both
 };
 
+/// mixed: positions, motion and what is summed in double, the law of contact between granules in float on twice the
+/// lanes. Walls are few, and carry the structure: their law stays in double.
+enum class Precision { full, mixed };
+
 struct ContactEffects {
   Damping damping = Damping::tsuji;
   Friction friction = Friction::coulomb;
   Variety variety = Variety::alike;
   Observation observation = Observation::none;
+  Precision precision = Precision::full;
 
   constexpr bool rotates() const { return friction == Friction::coulomb || friction == Friction::spring; }
   constexpr bool rubs() const { return friction != Friction::none; }
@@ -44,6 +49,11 @@ struct ContactEffects {
     return observation == Observation::energies || observation == Observation::ledger_and_energies;
   }
 };
+
+/// Springs, and contacts that only push, have no kernels in mixed precision.
+constexpr bool has_mixed_kernel(ContactEffects e) {
+  return !e.remembers() && !e.only_pushes();
+}
 
 /// leapfrog: forces see the half-step velocity. verlet: forces see the velocity predicted to the full step.
 enum class Integration { leapfrog, verlet };

@@ -78,6 +78,43 @@ template <class S> GRANDAMP_INLINE double largest(typename S::Vector v, double s
   return so_far;
 }
 
+/// p_j - p_i of `width` pairs, and the sum of their radii.
+template <class S, bool alike>
+GRANDAMP_INLINE void difference(const PairArguments& a, const CandidatePair* pairs, typename S::Vector& x,
+                                typename S::Vector& y, typename S::Vector& z, typename S::Vector& radii) {
+  using Row = typename S::Row;
+  const Row last_flipped = S::row_set(1.0, 1.0, 1.0, -1.0);
+  const PositionRow* position = a.granules.position;
+  Row rows[S::width];
+  for (int lane = 0; lane < S::width; ++lane) {
+    const Row i = S::row_load(&position[pairs[lane].first].x);
+    const Row j = S::row_load(&position[pairs[lane].second].x);
+    if constexpr (alike)
+      rows[lane] = j - i;
+    else
+      rows[lane] = S::row_fnma(last_flipped, i, j);
+  }
+  S::columns(rows, x, y, z, radii);
+  if constexpr (alike) radii = S::broadcast(2.0 * a.radius);
+}
+
+/// Moves the pairs that touch to the scratch list; returns their number.
+template <class S, ContactEffects E>
+GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const CandidatePair* pairs, std::size_t count) {
+  using Vector = typename S::Vector;
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < count; k += S::width) {
+    Vector x, y, z, radii;
+    difference<S, E.variety == Variety::alike>(a, pairs + k, x, y, z, radii);
+    const Vector square = S::fma(z, z, S::fma(y, y, x * x));
+    const unsigned mask = S::less(square, radii * radii);
+    if constexpr (E.remembers())
+      select_slots<S>(static_cast<std::size_t>(pairs - a.pairs) + k, mask, a.springs.slots + n);
+    n += S::select(pairs + k, mask, a.touching + n);
+  }
+  return n;
+}
+
 template <class S, ContactEffects E> struct PairLoop {
   using Vector = typename S::Vector;
   using Row = typename S::Row;
@@ -89,47 +126,36 @@ template <class S, ContactEffects E> struct PairLoop {
   Vector max_overlap;
   Vector max_closing = S::broadcast(0.0);
 
-  /// p_j - p_i of `width` pairs, and the sum of their radii.
-  void difference(const CandidatePair* pairs, Vector& x, Vector& y, Vector& z, Vector& radii) const {
-    const PositionRow* position = a.granules.position;
-    Row rows[width];
-    for (int lane = 0; lane < width; ++lane) {
-      const Row i = S::row_load(&position[pairs[lane].first].x);
-      const Row j = S::row_load(&position[pairs[lane].second].x);
-      if constexpr (alike)
-        rows[lane] = j - i;
-      else
-        rows[lane] = S::row_fnma(last_flipped, i, j);
+  /// From i to j, the distance, the sum of the radii, and by how much they exceed it.
+  void approach(const CandidatePair* pairs, Vector& x, Vector& y, Vector& z, Vector& distance, Vector& radii,
+                Vector& overlap) const {
+    if constexpr (E.precision == Precision::mixed) {
+      // An overlap is the small difference of two lengths: float could not tell it. (radii^2 - distance^2) is taken in
+      // double, and divided by (radii + distance).
+      using D = typename S::Double;
+      typename D::Vector px[2], py[2], pz[2], sum[2], square[2], gap[2];
+      for (int half = 0; half < 2; ++half) {
+        difference<D, alike>(a, pairs + half * D::width, px[half], py[half], pz[half], sum[half]);
+        square[half] = D::fma(pz[half], pz[half], D::fma(py[half], py[half], px[half] * px[half]));
+        gap[half] = sum[half] * sum[half] - square[half];
+      }
+      x = S::narrow(px);
+      y = S::narrow(py);
+      z = S::narrow(pz);
+      radii = alike ? S::broadcast(2.0 * a.radius) : S::narrow(sum);
+      distance = S::sqrt(S::narrow(square));
+      overlap = S::max(S::narrow(gap) / (radii + distance), S::broadcast(0.0));
+    } else {
+      difference<S, alike>(a, pairs, x, y, z, radii);
+      distance = S::sqrt(S::fma(z, z, S::fma(y, y, x * x)));
+      overlap = S::max(radii - distance, S::broadcast(0.0));
     }
-    S::columns(rows, x, y, z, radii);
-    if constexpr (alike) radii = S::broadcast(2.0 * a.radius);
-  }
-
-  /// Moves the pairs that touch to the scratch list; returns their number.
-  std::size_t touching(const CandidatePair* pairs, std::size_t count) const {
-    std::size_t n = 0;
-    for (std::size_t k = 0; k < count; k += width) {
-      Vector x, y, z, radii;
-      difference(pairs + k, x, y, z, radii);
-      const Vector square = S::fma(z, z, S::fma(y, y, x * x));
-      const unsigned mask = S::less(square, radii * radii);
-      if constexpr (E.remembers())
-        select_slots<S>(static_cast<std::size_t>(pairs - a.pairs) + k, mask, a.springs.slots + n);
-      n += S::select(pairs + k, mask, a.touching + n);
-    }
-    return n;
   }
 
   void contacts(const CandidatePair* pairs, unsigned lanes, ContactResult& result) {
     ContactGeometry<S> c;
-    Vector x, y, z, radii;
-    difference(pairs, x, y, z, radii);
-    const Vector distance = S::sqrt(S::fma(z, z, S::fma(y, y, x * x)));
-    const Vector inverse = S::broadcast(1.0) / distance;
-    c.overlap = S::max(radii - distance, S::broadcast(0.0));
-    c.nx = x * inverse;
-    c.ny = y * inverse;
-    c.nz = z * inverse;
+    Vector x, y, z, distance, radii;
+    approach(pairs, x, y, z, distance, radii, c.overlap);
 
     const MotionRow* motion = a.granules.predicted;
     Row rows[width];
@@ -149,18 +175,28 @@ template <class S, ContactEffects E> struct PairLoop {
             S::row_load(motion[pairs[lane].first].surface_spin) + S::row_load(motion[pairs[lane].second].surface_spin);
       S::columns(rows, c.sx, c.sy, c.sz, inverse_radius);
     }
+    Vector inverse; // of the distance
     if constexpr (alike) {
+      inverse = S::broadcast(1.0) / distance;
       c.radius = S::broadcast(0.5 * a.radius);
       c.mass = S::broadcast(0.5 * a.mass);
       c.lever = distance * S::broadcast(0.5 / a.radius);
       max_overlap = S::max(max_overlap, c.overlap * S::broadcast(1.0 / a.radius));
     } else {
-      c.radius = S::broadcast(1.0) / inverse_radius;
-      c.mass = S::broadcast(1.0) / inverse_mass;
-      c.lever = distance / radii;
+      // One division does for four: the inverse of a product, times all but one of its factors.
+      const Vector lengths = distance * radii, inverses = inverse_mass * inverse_radius;
+      const Vector of_all = S::broadcast(1.0) / (lengths * inverses);
+      const Vector of_lengths = of_all * inverses, of_inverses = of_all * lengths;
+      inverse = of_lengths * radii;
+      c.lever = distance * distance * of_lengths;
+      c.radius = of_inverses * inverse_mass;
+      c.mass = of_inverses * inverse_radius;
       // The larger inverse radius is at most the sum: the exact ratio is worked out only where it could be a record.
       if (S::less(max_overlap, c.overlap * inverse_radius)) deepest(pairs, lanes, c.overlap);
     }
+    c.nx = x * inverse;
+    c.ny = y * inverse;
+    c.nz = z * inverse;
     c.friction_mass = c.mass;
 
     LawVectors<S> law;
@@ -275,11 +311,12 @@ template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, Co
   PairLoop<S, E> loop{.a = a, .max_overlap = S::broadcast(result.max_overlap)};
   for (std::size_t begin = 0; begin < a.count; begin += pair_chunk) {
     const std::size_t left = a.count - begin;
-    const std::size_t n = loop.touching(a.pairs + begin, left < pair_chunk ? left : pair_chunk);
-    const CandidatePair nobody{a.granules.ghost, a.granules.ghost + 1};
-    for (unsigned lane = 0; lane < list_padding; ++lane) a.touching[n + lane] = nobody;
+    const std::size_t n = touching<typename S::Double, E>(a, a.pairs + begin, left < pair_chunk ? left : pair_chunk);
+    if (n == 0) continue;
+    // The last, partly filled vector repeats its last contact in the lanes that are not used.
+    for (std::size_t k = n; k % contact_padding != 0; ++k) a.touching[k] = a.touching[n - 1];
     if constexpr (E.remembers())
-      for (unsigned lane = 0; lane < list_padding; ++lane) a.springs.slots[n + lane] = 0;
+      for (std::size_t k = n; k % contact_padding != 0; ++k) a.springs.slots[k] = a.springs.slots[n - 1];
     for (std::size_t k = 0; k < n; k += S::width)
       loop.contacts(a.touching + k, static_cast<unsigned>(n - k < S::width ? n - k : S::width), result);
   }

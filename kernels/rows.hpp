@@ -50,5 +50,7 @@ struct alignas(8) CandidatePair {
 inline constexpr std::uint32_t block_granules = 512;
 /// Lists are padded to this many entries, whatever the lane count, so that every instruction set walks the same list.
 inline constexpr std::uint32_t list_padding = 8;
+/// Pairs found touching are padded to this many: lanes of the widest law, in float.
+inline constexpr std::uint32_t contact_padding = 16;
 
 } // namespace grandamp::kernels

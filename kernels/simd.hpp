@@ -5,6 +5,8 @@
 // An instruction set S offers
 //   S::Vector, S::width             lanes of double
 //   S::Row                          one row of four doubles
+//   S::Double                       the set that works in double: S itself, but for the mixed sets
+//   S::tiny                         a square far below any speed's or force's that is not zero
 //   load, store, broadcast          unaligned
 //   fma(a, b, c) = a b + c, fnma(a, b, c) = c - a b   (fused where the instruction set has it)
 //   sqrt, max, min, abs
@@ -15,6 +17,10 @@
 //   select(from, mask, to)          moves the marked ones of `width` list entries together; returns their number.
 //                                   Reads and writes `width` entries.
 //   select_partners(first, base, mask, to)   the pairs (first, base + lane) of the marked lanes
+//
+// A mixed set (simd_..._mixed.hpp) has lanes of float, twice as many, and rows of double all the same: columns and rows
+// convert on the way, broadcast and store take and give double. It has no load and no select; and
+//   narrow(halves)                  two vectors of double into one of float
 #pragma once
 
 #include "kernels/rows.hpp"

@@ -23,7 +23,9 @@ alignas(64) inline constexpr std::uint32_t avx2_select_index_table[16][4] = {
 struct Avx2 {
   using Vector = xsimd::batch<double, xsimd::fma3<xsimd::avx2>>;
   using Row = Vector;
+  using Double = Avx2;
   static constexpr int width = 4;
+  static constexpr double tiny = 1e-200;
 
   GRANDAMP_INLINE Vector load(const double* p) { return _mm256_loadu_pd(p); }
   GRANDAMP_INLINE void store(double* p, Vector v) { _mm256_storeu_pd(p, v); }

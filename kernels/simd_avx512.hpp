@@ -15,7 +15,9 @@ namespace grandamp::kernels {
 struct Avx512 {
   using Vector = xsimd::batch<double, xsimd::avx512dq>;
   using Row = xsimd::batch<double, xsimd::fma3<xsimd::avx2>>;
+  using Double = Avx512;
   static constexpr int width = 8;
+  static constexpr double tiny = 1e-200;
 
   GRANDAMP_INLINE Vector load(const double* p) { return _mm512_loadu_pd(p); }
   GRANDAMP_INLINE void store(double* p, Vector v) { _mm512_storeu_pd(p, v); }

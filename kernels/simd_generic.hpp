@@ -10,7 +10,9 @@ struct Generic {
   typedef double Vector __attribute__((vector_size(32)));
   typedef long long Mask __attribute__((vector_size(32)));
   using Row = Vector;
+  using Double = Generic;
   static constexpr int width = 4;
+  static constexpr double tiny = 1e-200;
 
   GRANDAMP_INLINE Vector load(const double* p) {
     Vector v;

@@ -17,6 +17,7 @@ using kernels::Damping;
 using kernels::Friction;
 using kernels::InstructionSet;
 using kernels::Observation;
+using kernels::Precision;
 using kernels::Variety;
 
 constexpr double radius = 1.0e-3;    // m
@@ -89,7 +90,7 @@ constexpr int bed_side = 13; // 2,197 granules: S1's number
 void pair_bench(benchmark::State& state, InstructionSet set, ContactEffects effects, bool touching) {
   Bed bed(bed_side, (touching ? 1.97 : 2.1) * radius, (touching ? 0.005 : 0.03) * radius, effects.ledger());
   const std::vector<kernels::CandidatePair> list = bed.pairs((touching ? 2.0 : 2.3) * radius);
-  std::vector<kernels::CandidatePair> scratch(kernels::pair_chunk + 2 * kernels::list_padding);
+  std::vector<kernels::CandidatePair> scratch(kernels::pair_chunk + kernels::contact_padding);
   kernels::PairArguments a;
   a.granules = bed.granules.arrays();
   a.pairs = list.data();
@@ -212,13 +213,22 @@ void register_pairs(InstructionSet set) {
       {"full_one_radius", {Damping::tsuji, Friction::coulomb, Variety::alike, Observation::none}},
       {"full_several_radii", {Damping::tsuji, Friction::coulomb, Variety::sizes, Observation::none}},
       {"full_several_materials", {Damping::tsuji, Friction::coulomb, Variety::materials, Observation::none}},
-      {"full_several_radii_ledger", {Damping::tsuji, Friction::coulomb, Variety::sizes, Observation::ledger}}};
+      {"full_several_radii_ledger", {Damping::tsuji, Friction::coulomb, Variety::sizes, Observation::ledger}},
+      {"frictionless_mixed", {Damping::tsuji, Friction::none, Variety::alike, Observation::none, Precision::mixed}},
+      {"full_one_radius_mixed",
+       {Damping::tsuji, Friction::coulomb, Variety::alike, Observation::none, Precision::mixed}},
+      {"full_several_radii_mixed",
+       {Damping::tsuji, Friction::coulomb, Variety::sizes, Observation::none, Precision::mixed}},
+      {"full_several_radii_ledger_mixed",
+       {Damping::tsuji, Friction::coulomb, Variety::sizes, Observation::ledger, Precision::mixed}}};
   for (const Variant& v : variants) {
     for (const bool touching : {false, true})
       benchmark::RegisterBenchmark(
           fmt::format("{}/pair_{}/{}", kernels::name(set), touching ? "contact" : "candidate", v.name).c_str(),
           [=](benchmark::State& state) { pair_bench(state, set, v.effects, touching); });
-    if (v.effects.variety != Variety::alike || v.effects.friction != Friction::coulomb) continue;
+    if (v.effects.variety != Variety::alike || v.effects.friction != Friction::coulomb ||
+        v.effects.precision != Precision::full)
+      continue;
     for (const bool side : {false, true})
       for (const bool touching : {false, true})
         benchmark::RegisterBenchmark(

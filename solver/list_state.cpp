@@ -147,7 +147,7 @@ void restore(VerletList& list, const ListState& state, std::uint32_t granules, s
     segment.boundary_pairs =
         put_range(from, segment, segment.boundary, segment.first, segment.last, granules, granules);
     put_walls(from, segment, walls, granules);
-    segment.touching.resize(kernels::pair_chunk + 2 * kernels::list_padding);
+    segment.touching.resize(kernels::pair_chunk + kernels::contact_padding);
   }
   if (row != granules) from.segment_rows.fail("leaves rows out");
   from.finish();

@@ -155,7 +155,7 @@ void check_explicit(const Room& room, const Spheres& spheres, const std::vector<
 
 } // namespace
 
-Placement place_granules(const Plan& plan) {
+Placement place_granules(const Plan& plan, const std::function<void()>& pulse) {
   const Scene& scene = plan.scene;
   const Room room(scene.enclosure);
   Spheres spheres;
@@ -169,7 +169,7 @@ Placement place_granules(const Plan& plan) {
     placement.to_be_poured = scene.packing == PackingKind::settled;
     // Too full for a loose lattice: random places can still be found. Too full for those: a close packing with gaps.
     const bool found = (placement.to_be_poured && packing::place_on_lattice(room, scene.gravity, spheres, random)) ||
-                       packing::place_at_random(room, spheres, random) ||
+                       packing::place_at_random(room, spheres, random, pulse) ||
                        packing::place_on_close_packing(room, spheres, random);
     if (!found) refuse(plan);
   }

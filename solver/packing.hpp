@@ -3,6 +3,7 @@
 
 #include "solver/plan.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace grandamp {
@@ -23,6 +24,7 @@ struct Placement {
 /// Deterministic in the scene's seed. "random": anywhere in the enclosure. "settled": loosely, from the bottom (against
 /// gravity) upwards, to be poured by the solver. Granules given by count keep clear of those with explicit positions.
 /// Throws SceneError if they do not fit, or explicit ones overlap by half a radius, coincide, or cross a wall.
-Placement place_granules(const Plan& plan);
+/// `pulse`, if given, is called now and then; what it throws ends the search.
+Placement place_granules(const Plan& plan, const std::function<void()>& pulse = {});
 
 } // namespace grandamp

@@ -4,6 +4,7 @@
 #include "solver/random_numbers.hpp"
 #include "solver/sphere_grid.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace grandamp::packing {
@@ -37,8 +38,8 @@ struct Spheres {
 };
 
 /// Anywhere without overlaps: one after the other where that is easy, else from random points by pushing overlaps
-/// apart. False if there is no room.
-bool place_at_random(const Room& room, Spheres& spheres, RandomNumbers& random);
+/// apart. False if there is no room. `pulse`, if given, is called now and then; what it throws ends the search.
+bool place_at_random(const Room& room, Spheres& spheres, RandomNumbers& random, const std::function<void()>& pulse);
 
 /// On the sites of a hexagonal close packing, those that are left over empty at random: for enclosures too full for
 /// random places. False (and nothing is placed) if there are too few sites.

@@ -44,9 +44,10 @@ public:
     longest_move_ = 0.3 * smallest;
   }
 
-  bool run(int sweeps) {
+  bool run(int sweeps, const std::function<void()>& pulse) {
     double moved = skin_; // the first sweep lists the neighbours
     for (int sweep = 0; sweep < sweeps; ++sweep) {
+      if (pulse) pulse();
       if (2.0 * moved >= skin_) list_neighbours();
       if (push_apart() <= 0.0) return true;
       moved = move();
@@ -140,7 +141,7 @@ double solid_fraction(const Room& room, const Spheres& spheres) {
 
 } // namespace
 
-bool place_at_random(const Room& room, Spheres& spheres, RandomNumbers& random) {
+bool place_at_random(const Room& room, Spheres& spheres, RandomNumbers& random, const std::function<void()>& pulse) {
   const std::size_t count = spheres.radius.size();
   SphereGrid grid(room.box(), spheres.position, spheres.radius);
   for (std::size_t i = 0; i < count; ++i)
@@ -151,8 +152,14 @@ bool place_at_random(const Room& room, Spheres& spheres, RandomNumbers& random) 
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return spheres.radius[a] > spheres.radius[b]; });
   constexpr int tries = 60;
+  constexpr std::size_t between_pulses = 256;
   bool all = true;
+  std::size_t next_pulse = between_pulses;
   for (const std::size_t i : order) {
+    if (pulse && --next_pulse == 0) {
+      pulse();
+      next_pulse = between_pulses;
+    }
     if (spheres.placed[i]) continue;
     bool found = false;
     for (int k = 0; k < tries && !found; ++k) {
@@ -165,7 +172,7 @@ bool place_at_random(const Room& room, Spheres& spheres, RandomNumbers& random) 
   if (all) return true;
   const double swelling =
       std::clamp(0.4 * (std::cbrt(random_close_packing / solid_fraction(room, spheres)) - 1.0), 1.0e-3, 0.03);
-  return OverlapRemoval(room, spheres, swelling).run(2000);
+  return OverlapRemoval(room, spheres, swelling).run(2000, pulse);
 }
 
 } // namespace grandamp::packing

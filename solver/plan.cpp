@@ -70,6 +70,7 @@ void choose_effects(Plan& plan, const ContactTable& contacts) {
   effect("energy", scene.output.energy);
   effect("audit", granules && scene.verlet.audit > 0);
   effect("verlet", granules && scene.time.integrator == Integrator::verlet);
+  effect("mixed", granules && scene.time.precision == Precision::mixed);
 }
 
 void choose_list(Plan& plan) {
@@ -118,6 +119,7 @@ void add_notes(Plan& plan) {
     note(plan, "granules", "no granules: the bare structure");
     return;
   }
+  if (plan.step_choice) note(plan, "time.error", plan.step_choice->reason());
   if (plan.impact_speed_estimated)
     note(plan, "time.impact_speed",
          fmt::format(
@@ -167,6 +169,8 @@ Plan make_plan(const Scene& scene) {
   plan.time_step_reason = step.reason;
   plan.time_step = step.step;
   plan.steps = step.steps;
+  plan.step_choice = step.choice;
+  if (step.choice) plan.scene.time.integrator = step.choice->integrator;
 
   plan.window = scene.output.window.value_or(std::array<double, 2>{0.5 * scene.time.duration, scene.time.duration});
   choose_list(plan);

@@ -4,8 +4,10 @@
 
 #include "solver/errors.hpp"
 #include "solver/scene.hpp"
+#include "solver/step_choice.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,9 +32,10 @@ struct Plan {
   double largest_radius = 0.0;
   double impact_speed = 0.0; ///< closing speed that T_c rests on, m/s
   bool impact_speed_estimated = true;
-  double contact_duration = 0.0; ///< T_c of the stiffest, lightest contact, s; 0 without granules
-  std::string time_step_reason;  ///< one sentence: which contact, which speed
-  double time_step = 0.0;        ///< s
+  double contact_duration = 0.0;         ///< T_c of the stiffest, lightest contact, s; 0 without granules
+  std::string time_step_reason;          ///< one sentence: which contact, which speed
+  double time_step = 0.0;                ///< s
+  std::optional<StepChoice> step_choice; ///< what time.error led to; the scene's integrator is then the one chosen
   std::int64_t steps = 0;
   std::array<double, 2> window{0.0, 0.0}; ///< of the statistics, s
   double skin = 0.0;                      ///< at the start, m

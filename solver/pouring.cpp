@@ -24,9 +24,11 @@ Plan pouring_plan(const Plan& plan) {
   scene.output.energy = false;
   scene.output.window.reset();
   scene.time.step.reset();
+  scene.time.error.reset();
   scene.time.impact_speed.reset();
   scene.time.steps_per_contact = 8.0;
   scene.time.integrator = Integrator::leapfrog;
+  scene.time.precision = Precision::full;
   scene.time.duration = longest_pour;
   scene.verlet = {};
   for (Population& population : scene.populations) population.speed = 0.0;
@@ -48,24 +50,33 @@ Plan pouring_plan(const Plan& plan) {
 } // namespace
 
 void pour(const Plan& plan, Placement& placement, kernels::InstructionSet isa, int threads,
-          const std::function<void(double, double)>& progress) {
+          const std::function<void(const PouringProgress&)>& progress, const RunState* so_far) {
   const Plan pouring = pouring_plan(plan);
-  Stepper stepper(pouring, placement, isa, threads);
+  Stepper stepper =
+      so_far != nullptr ? Stepper(pouring, *so_far, isa, threads) : Stepper(pouring, placement, isa, threads);
   const double gravity = norm(plan.scene.gravity);
   double weight_times_diameter = 0.0;
   for (std::size_t i = 0; i < placement.position.size(); ++i)
     weight_times_diameter += placement.mass[i] * gravity * 2.0 * placement.radius[i];
 
-  double share = 1.0;
-  while (share > rest_share) {
-    if (stepper.step_number() >= pouring.steps)
+  PouringProgress now;
+  now.save = [&](RunState& state) {
+    stepper.save(state);
+    state.steps = std::max(pouring.steps, stepper.step_number());
+    state.window = pouring.window;
+  };
+  for (;;) {
+    const bool look = stepper.step_number() % steps_between_looks == steps_between_looks - 1;
+    const StepRecord& record = stepper.step(look);
+    if (look) now.energy = record.kinetic / weight_times_diameter;
+    if (now.energy <= rest_share) break; // and is not to be gone on from: the next look would be steps away
+    now.time = stepper.time();
+    if (progress) progress(now);
+    if (look && stepper.step_number() >= pouring.steps)
       throw GuardError(fmt::format(
           "packing: the granules came to no rest in {} s of pouring (mean kinetic energy {:.2g} m g d, wanted {:.0e}); "
           "use packing.kind = \"random\", or give positions",
-          longest_pour, share, rest_share));
-    for (std::int64_t k = 1; k < steps_between_looks; ++k) stepper.step(false);
-    share = stepper.step(true).kinetic / weight_times_diameter;
-    if (progress) progress(stepper.time(), share);
+          longest_pour, now.energy, rest_share));
   }
   const Granules& granules = stepper.granules();
   for (std::uint32_t row = 0; row < granules.count(); ++row) {

@@ -57,10 +57,11 @@ struct ContactConstants {
   std::optional<double> alpha;            ///< Tsuji's constant instead of restitution
   std::optional<double> normal_damping;   ///< linear damping, N s/m
   std::optional<double> friction;         ///< mu
-  std::optional<double> tangential_stiffness; ///< k_t of reference_radius, N/m^1.5, spring friction; it goes with stiffness
-  std::optional<double> tangential_damping;   ///< N s/m, spring friction; left out: none
-  std::optional<double> young;            ///< of the wall, Pa
-  std::optional<double> poisson;          ///< of the wall
+  std::optional<double>
+      tangential_stiffness; ///< k_t of reference_radius, N/m^1.5, spring friction; it goes with stiffness
+  std::optional<double> tangential_damping; ///< N s/m, spring friction; left out: none
+  std::optional<double> young;              ///< of the wall, Pa
+  std::optional<double> poisson;            ///< of the wall
 };
 
 /// [[contact.pair]]: between two populations by name, or a population and "wall", instead of the above.
@@ -105,13 +106,19 @@ struct Excitation {
 };
 
 enum class Integrator { leapfrog, verlet };
+/// mixed: positions, velocities and sums in double, the law of contact between granules in float. Not with spring
+/// friction, nor without tension.
+enum class Precision { full, mixed };
 
 struct TimeControl {
   double duration = 0.0;              ///< s
   double steps_per_contact = 8.0;     ///< k in T_c / k
   std::optional<double> step;         ///< s, instead of steps_per_contact
+  std::optional<double> error;        ///< of a contact, instead of steps_per_contact (solver/contact_error.hpp)
   std::optional<double> impact_speed; ///< closing speed for T_c, m/s; left out: estimated
   Integrator integrator = Integrator::leapfrog;
+  bool integrator_free = false; ///< with `error`: the integrator is chosen, too
+  Precision precision = Precision::full;
 };
 
 enum class ListPolicy { guarded, predicted, displacement, fixed, none, all_pairs };

@@ -190,14 +190,27 @@ void check_motion(Faults& faults, const Scene& scene) {
   }
 }
 
+/// Beyond, a contact means nothing.
+constexpr double largest_error = 0.5;
+
 void check_controls(Faults& faults, const Scene& scene) {
   const TimeControl& time = scene.time;
   const bool lasts = faults.positive("time.duration", time.duration);
   faults.positive("time.steps_per_contact", time.steps_per_contact);
+  if (time.error && !(*time.error > 0.0 && *time.error <= largest_error))
+    faults.add("time.error", fmt::format("{:g}", *time.error), "out of range",
+               fmt::format("above 0 and at most {:g}", largest_error));
+  if (time.error && time.step)
+    faults.add("time.error", fmt::format("{:g}", *time.error), "given beside time.step", "one of them");
   if (time.step && faults.positive("time.step", *time.step) && lasts && *time.step > time.duration)
     faults.add("time.step", fmt::format("{:g}", *time.step), "longer than the duration",
                fmt::format("at most {:g} s", time.duration));
   if (time.impact_speed) faults.positive("time.impact_speed", *time.impact_speed);
+  if (time.precision == Precision::mixed && scene.contact.friction == FrictionLaw::spring)
+    faults.add("time.precision", "mixed", "not with contact.friction = \"spring\"",
+               "\"double\"; or friction \"coulomb\" or \"none\"");
+  if (time.precision == Precision::mixed && scene.contact.damping != NormalDamping::none && !scene.contact.tension)
+    faults.add("time.precision", "mixed", "not with contact.tension = false", "\"double\"; or tension = true");
 
   const VerletControl& verlet = scene.verlet;
   const double skin = verlet.skin.value_or(0.0);

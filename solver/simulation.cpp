@@ -52,8 +52,13 @@ double forcing_period(const Excitation& excitation) {
 }
 
 Placement placed(const Plan& plan, kernels::InstructionSet isa, int threads, const RunOptions& options) {
-  Placement placement = place_granules(plan);
-  if (placement.to_be_poured) pour(plan, placement, isa, threads, options.pouring_progress);
+  Placement placement = place_granules(plan, [&options] {
+    if (options.pouring_progress) options.pouring_progress({});
+  });
+  if (placement.to_be_poured)
+    pour(plan, placement, isa, threads, options.pouring_progress, options.poured_so_far);
+  else if (options.poured_so_far != nullptr)
+    throw StateError("the state is of granules being poured, and this scene pours none");
   return placement;
 }
 

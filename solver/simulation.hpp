@@ -93,19 +93,30 @@ struct ResponseStatistics {
 
 class Profile;
 
+struct RunState; // solver/run_state.hpp
+
+/// Granules on their way to their first places, before t = 0.
+struct PouringProgress {
+  double time = 0.0;   ///< poured so far, s
+  double energy = 1.0; ///< mean kinetic energy per granule over m g d, when last looked at; at rest below 1e-6
+  /// The exact state, for RunOptions::poured_so_far. Empty while places to pour from, or random ones, are sought.
+  std::function<void(RunState&)> save;
+};
+
 struct RunOptions {
   int threads = 0; ///< 0: chosen
   std::string isa; ///< "generic", "avx2", "avx512"; empty: the best this machine runs
-  /// Called now and then while granules are poured, with the simulated time and the mean kinetic energy over m g d.
-  std::function<void(double, double)> pouring_progress;
+  /// Called at every step of the pouring, and now and then while places are sought; what it throws ends both.
+  std::function<void(const PouringProgress&)> pouring_progress;
+  /// Goes on with a pouring by the same bits, as PouringProgress::save told it of the same scene.
+  const RunState* poured_so_far = nullptr;
 };
-
-struct RunState; // solver/run_state.hpp
 
 class Simulation {
 public:
   /// Places the granules (this may pour them for a while) and prepares the first step.
-  /// Throws SceneError, or GuardError if the packing comes to no rest.
+  /// Throws SceneError, GuardError if the packing comes to no rest, or StateError if options.poured_so_far is of
+  /// another scene.
   Simulation(const Scene& scene, const RunOptions& options = {});
   /// Goes on where the run that `state` was taken from was, by the same bits: on any number of threads, and on avx2 or
   /// avx512 alike. Nothing is placed or poured. The scene must be that run's; what it says of output intervals may

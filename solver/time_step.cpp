@@ -89,7 +89,18 @@ struct StiffestContact {
   double alpha = 0.0;                    ///< largest (Tsuji)
   double unit_spring_time = infinity;    ///< 1/omega of the stiffest tangential spring at the overlap of 1 m/s, s
   double spring_damping_time = infinity; ///< least effective mass over tangential damping, s
+  std::vector<ContactKind> kinds;        ///< every law, by the contact of it that lasts shortest
 };
+
+void keep_shortest(std::vector<ContactKind>& kinds, ContactKind&& kind) {
+  const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const ContactKind& other) {
+    return other.wall == kind.wall && other.law == kind.law;
+  });
+  if (known == kinds.end())
+    kinds.push_back(std::move(kind));
+  else if (kind.duration < known->duration)
+    *known = std::move(kind);
+}
 
 std::string name_of(const Scene& scene, std::size_t population) {
   const std::string& name = scene.populations[population].name;
@@ -99,12 +110,14 @@ std::string name_of(const Scene& scene, std::size_t population) {
 StiffestContact stiffest_contact(const Scene& scene, const ContactTable& contacts) {
   StiffestContact stiffest;
   const std::size_t granules = granule_count(scene);
-  const auto consider = [&](const ContactLaw& law, double mass, double reduced_radius, auto&& name) {
+  const auto consider = [&](const ContactLaw& law, bool wall, double mass, double reduced_radius,
+                            const std::string& name) {
     const double duration = hertz_contact_duration(mass, law.stiffness_coefficient * std::sqrt(reduced_radius), 1.0);
     if (duration < stiffest.unit_duration) {
       stiffest.unit_duration = duration;
-      stiffest.name = name();
+      stiffest.name = name;
     }
+    keep_shortest(stiffest.kinds, {law, wall, mass, reduced_radius, duration, name});
     if (scene.contact.damping == NormalDamping::linear && law.normal_damping > 0.0)
       stiffest.damping_time = std::min(stiffest.damping_time, mass / law.normal_damping);
     if (scene.contact.damping == NormalDamping::tsuji) {
@@ -124,13 +137,13 @@ StiffestContact stiffest_contact(const Scene& scene, const ContactTable& contact
   const std::vector<GranuleClass> classes = granule_classes(scene);
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const GranuleClass& a = classes[i];
-    consider(contacts.wall[a.population], effective_mass_at_wall(scene, a, granules), a.radius,
-             [&] { return name_of(scene, a.population) + " against the wall"; });
+    consider(contacts.wall[a.population], true, effective_mass_at_wall(scene, a, granules), a.radius,
+             name_of(scene, a.population) + " against the wall");
     for (std::size_t j = 0; j <= i && granules > 1; ++j) {
       const GranuleClass& b = classes[j];
-      consider(contacts.between(a.population, b.population), a.mass * b.mass / (a.mass + b.mass),
+      consider(contacts.between(a.population, b.population), false, a.mass * b.mass / (a.mass + b.mass),
                a.radius * b.radius / (a.radius + b.radius),
-               [&] { return name_of(scene, a.population) + " against " + name_of(scene, b.population); });
+               name_of(scene, a.population) + " against " + name_of(scene, b.population));
     }
   }
   return stiffest;
@@ -191,47 +204,14 @@ void step_without_granules(TimeStep& result, const Scene& scene, const Bound& st
   divide(result, scene.time.duration, longest);
 }
 
-} // namespace
-
-double hertz_contact_duration(double effective_mass, double stiffness, double closing_speed) {
-  return 3.2180 * std::pow(effective_mass * effective_mass / (stiffness * stiffness * closing_speed), 0.2);
-}
-
-double contact_duration_at(double contact_duration, double its_speed, double closing_speed) {
-  return contact_duration * std::pow(its_speed / closing_speed, 0.2);
-}
-
-TimeStep choose_time_step(const Scene& scene, const ContactTable& contacts) {
-  TimeStep result;
-  // The structure is first taken half a step back by its exact solution, which grows as exp(c h / M) in that direction.
-  Bound structure{infinity, ""};
-  if (scene.structure && scene.structure->damping > 0.0)
-    structure = {4.0 * scene.structure->mass / scene.structure->damping,
-                 "four times the structure's decay time, mass over damping"};
-  if (granule_count(scene) == 0) {
-    step_without_granules(result, scene, structure);
-    return result;
-  }
-
-  std::string why;
-  result.estimated = !scene.time.impact_speed;
-  if (scene.time.impact_speed) {
-    result.impact_speed = *scene.time.impact_speed;
-    why = "as given";
-  } else {
-    const ImpactSpeed estimate = estimate_impact_speed(scene);
-    result.impact_speed = estimate.speed;
-    why = estimate.reason;
-  }
-  const StiffestContact stiffest = stiffest_contact(scene, contacts);
-  result.contact_duration = contact_duration_at(stiffest.unit_duration, 1.0, result.impact_speed);
-
+/// The step with T_c over `per_contact`, or the scene's own.
+TimeStep step_over(double per_contact, TimeStep result, const Scene& scene, const StiffestContact& stiffest,
+                   const Bound& structure, const std::string& why) {
   // A third of a contact is where leapfrog still hangs together; the dampings' bounds are half of what is chosen
   // freely.
   Bound stable{result.contact_duration / 3.0,
                fmt::format("a contact of {} lasts {:.4g} s at {:.3g} m/s, and a third of it is the most", stiffest.name,
                            result.contact_duration, result.impact_speed)};
-  const double per_contact = scene.time.steps_per_contact;
   Bound chosen{result.contact_duration / per_contact,
                fmt::format("T_c = {:.4g} s of {}, closing at {:.3g} m/s ({}), over {:g}", result.contact_duration,
                            stiffest.name, result.impact_speed, why, per_contact)};
@@ -284,6 +264,55 @@ TimeStep choose_time_step(const Scene& scene, const ContactTable& contacts) {
   divide(result, scene.time.duration, chosen.step);
   result.reason = chosen.reason;
   return result;
+}
+
+} // namespace
+
+double hertz_contact_duration(double effective_mass, double stiffness, double closing_speed) {
+  return 3.2180 * std::pow(effective_mass * effective_mass / (stiffness * stiffness * closing_speed), 0.2);
+}
+
+double contact_duration_at(double contact_duration, double its_speed, double closing_speed) {
+  return contact_duration * std::pow(its_speed / closing_speed, 0.2);
+}
+
+ContactCalibration calibrate_contacts(const Scene& scene, const ContactTable& contacts, double impact_speed) {
+  return {scene.contact, stiffest_contact(scene, contacts).kinds, impact_speed};
+}
+
+TimeStep choose_time_step(const Scene& scene, const ContactTable& contacts) {
+  TimeStep result;
+  // The structure is first taken half a step back by its exact solution, which grows as exp(c h / M) in that direction.
+  Bound structure{infinity, ""};
+  if (scene.structure && scene.structure->damping > 0.0)
+    structure = {4.0 * scene.structure->mass / scene.structure->damping,
+                 "four times the structure's decay time, mass over damping"};
+  if (granule_count(scene) == 0) {
+    step_without_granules(result, scene, structure);
+    return result;
+  }
+
+  std::string why;
+  result.estimated = !scene.time.impact_speed;
+  if (scene.time.impact_speed) {
+    result.impact_speed = *scene.time.impact_speed;
+    why = "as given";
+  } else {
+    const ImpactSpeed estimate = estimate_impact_speed(scene);
+    result.impact_speed = estimate.speed;
+    why = estimate.reason;
+  }
+  const StiffestContact stiffest = stiffest_contact(scene, contacts);
+  result.contact_duration = contact_duration_at(stiffest.unit_duration, 1.0, result.impact_speed);
+  if (!scene.time.error) return step_over(scene.time.steps_per_contact, result, scene, stiffest, structure, why);
+
+  const auto at = [&](double steps) { return step_over(steps, result, scene, stiffest, structure, why); };
+  const StepChoice choice =
+      choose_steps(scene, stiffest.kinds, result.impact_speed, [&](double steps) { return at(steps).step; });
+  TimeStep chosen = at(choice.steps_per_contact);
+  chosen.reason += ": " + choice.reason();
+  chosen.choice = choice;
+  return chosen;
 }
 
 } // namespace grandamp

@@ -84,7 +84,7 @@ void list_walls(Segment& segment, const Granules& granules, const std::vector<Wa
     longest = std::max(longest, list.granules.size());
   }
   segment.touching_wall.resize(longest + kernels::list_padding);
-  const std::size_t scratch = kernels::pair_chunk + 2 * kernels::list_padding;
+  const std::size_t scratch = kernels::pair_chunk + kernels::contact_padding;
   if (segment.touching.size() < scratch) segment.touching.resize(scratch);
 }
 

@@ -4,8 +4,6 @@
 #include "kernels/dispatch.hpp"
 #include "solver/packing.hpp"
 
-#include <fmt/format.h>
-
 namespace grandamp {
 
 int check_command(const CheckArguments& arguments) {
@@ -21,9 +19,9 @@ int check_command(const CheckArguments& arguments) {
 
   const std::string isa = arguments.isa.empty() ? kernels::name(kernels::best_available()) : arguments.isa;
   if (arguments.json) {
-    fmt::print("{}", plan_json(plan, isa, arguments.threads));
+    tell(plan_json(plan, isa, arguments.threads));
   } else if (!arguments.quiet) {
-    fmt::print("{}", plan_text(plan, isa, arguments.threads));
+    tell(plan_text(plan, isa, arguments.threads));
   }
   return exit_done;
 }

@@ -1,5 +1,6 @@
 #include "io/commands/commands.hpp"
 #include "io/run.hpp"
+#include "io/study.hpp"
 #include "io/version.hpp"
 #include "kernels/dispatch.hpp"
 
@@ -7,7 +8,10 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <functional>
 #include <new>
 
@@ -50,6 +54,25 @@ void add_max_wall(CLI::App& command, double& seconds) {
   command.add_option("--max-wall", seconds, "Write a checkpoint after so much wall time and stop with status 130")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
+}
+
+void add_study(CLI::App& command, StudyArguments& study) {
+  command.add_option("SCENE", study.scene, "Scene file, TOML")->required();
+  command.add_option("-o", study.folder, "Folder of the study; default: the scene's stem")->type_name("DIR");
+  command.add_option("--error", study.error, "Recommend settings for this error, 0.01 or 1%")->type_name("E");
+  command.add_option("--seeds", study.seeds, "Runs of each setting; their scatter tells what is chance; default 3")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--vary", study.vary, "What to vary; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(study_groups), std::end(study_groups))));
+  add_overrides(command, study.overrides);
+  add_threads(command, study.threads);
+  add_isa(command, study.isa);
+  command.add_flag("--force", study.force, "Replace the study that the folder holds");
+  add_quiet(command, study.quiet);
+  command.add_flag("--json", study.json, "Print study.json on standard output");
+  add_max_wall(command, study.max_wall);
 }
 
 void refuse(CLI::App& app, const std::string& command, const std::string& what) {
@@ -102,6 +125,11 @@ void require_isa(const std::string& isa) {
                        kernels::name(kernels::best_available()) + " (see --version)");
     }
   }
+}
+
+void tell(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw FileError(std::string("standard output: cannot write: ") + std::strerror(errno));
 }
 
 void tell_faults(const std::filesystem::path& scene, const std::vector<Problem>& faults) {
@@ -169,9 +197,15 @@ int command_line(int argc, char** argv) {
   CLI::App* const inspect_app = app.add_subcommand("inspect", "What a results or checkpoint file holds; is it whole?");
   inspect_app->add_option("FILE", inspected.file, "results.h5 or checkpoint.h5")->required();
 
+  StudyArguments study;
+  CLI::App* const study_app = app.add_subcommand("study", "What accuracy costs in time");
+  study_app->require_subcommand(1);
+  CLI::App* const accuracy_app = study_app->add_subcommand(
+      "accuracy", "Error against time over step, integrator, precision, list, friction, stiffness");
+  add_study(*accuracy_app, study);
+
   refuse(app, "sweep", "A case per point of a grid");
   refuse(app, "optimise", "The best design");
-  refuse(app, "study", "What accuracy costs in time");
   refuse(app, "report", "A page with pictures of a run");
 
   try {
@@ -185,11 +219,12 @@ int command_line(int argc, char** argv) {
     spdlog::error("{}", error.what());
     return exit_usage;
   }
-  if (run.quiet || resumed.quiet || check.quiet || export_quiet) spdlog::set_level(spdlog::level::warn);
+  if (run.quiet || resumed.quiet || check.quiet || export_quiet || study.quiet) spdlog::set_level(spdlog::level::warn);
 
   if (run_app->parsed()) return guarded(run.scene, [&run] { return run_command(run); });
   if (resume_app->parsed())
     return guarded(resumed.folder / "scene.toml", [&resumed] { return resume_command(resumed); });
+  if (accuracy_app->parsed()) return guarded(study.scene, [&study] { return study_command(study); });
   if (check_app->parsed()) return guarded(check.scene, [&check] { return check_command(check); });
   if (inspect_app->parsed()) return guarded({}, [&inspected] { return inspect_command(inspected); });
   return guarded({}, [&exported] { return export_command(exported); });

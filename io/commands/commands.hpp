@@ -46,6 +46,21 @@ struct CheckArguments {
   bool json = false;
 };
 
+struct StudyArguments {
+  std::filesystem::path scene;
+  std::filesystem::path folder;       ///< empty: the scene's stem
+  std::vector<std::string> overrides; ///< KEY=VALUE
+  std::string error = "1%";           ///< that settings are recommended for
+  int seeds = 3;
+  std::vector<std::string> vary; ///< groups of settings; empty: all
+  int threads = 0;               ///< 0: what the process may use
+  std::string isa;
+  double max_wall = 0.0; ///< s; 0: no end
+  bool force = false;
+  bool quiet = false;
+  bool json = false;
+};
+
 struct ExportArguments {
   std::filesystem::path folder;
   std::string what;           ///< "history" or "granules"
@@ -62,10 +77,13 @@ int resume_command(const ResumeArguments& arguments);
 int check_command(const CheckArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int inspect_command(const InspectArguments& arguments);
+int study_command(const StudyArguments& arguments);
 
 /// Throws UsageError unless this machine runs the instruction set of that name; empty: none asked for.
 void require_isa(const std::string& isa);
 
+/// Writes to standard output. Throws FileError: a full disk behind a redirection must not look like success.
+void tell(const std::string& text);
 /// Logs each fault, or each note, as a line of its own.
 void tell_faults(const std::filesystem::path& scene, const std::vector<Problem>& faults);
 void tell_notes(const std::filesystem::path& scene, const std::vector<Problem>& notes);

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <cstdio>
+#include <cmath>
 
 namespace grandamp {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 std::string closing_line(const RunResult& result, double wall_time, const std::filesystem::path& folder) {
   std::string line =
       fmt::format("{:.6g} s in {} steps, {} of wall time", result.time, result.steps, readable_seconds(wall_time));
-  if (result.response) {
+  if (result.response && !std::isnan(result.response->amplitude)) {
     line += fmt::format("; amplitude {:.4g} mm, rms {:.4g} mm, {}", 1e3 * result.response->amplitude,
                         1e3 * result.response->rms_displacement, result.response->steady ? "steady" : "not steady");
   }
@@ -69,7 +69,7 @@ int conduct(const std::filesystem::path& scene, const std::filesystem::path& fol
   const int status = tell_end(result);
   if (!result.summary.empty() && result.status != RunStatus::done_before)
     spdlog::info("{}", closing_line(result, wall_time, folder));
-  if (json) fmt::print("{}", result.summary);
+  if (json) tell(result.summary);
   return status;
 }
 

@@ -21,6 +21,14 @@ LADDER = [  # what is added, the overrides that it changes, and those that it ta
     ("ledger", {"output.energy": "true"}, ()),
     ("audit, every 100 steps", {"verlet.audit": 100}, ()),
 ]
+#: Instead of what the bed with several radii has; springs remember their contacts and cost memory besides.
+VARIANTS = [
+    ("Coulomb friction, double", {}),
+    ("mixed precision", {"time.precision": "mixed"}),
+    ("tangential springs", {"contact.friction": "spring"}),
+    ("contacts that only push", {"contact.tension": "false"}),
+    ("velocity Verlet", {"time.integrator": "verlet"}),
+]
 PHASES = {"pairs": ("pair_kernel", "PairLoop"), "walls": ("wall_kernel", "WallLoop"),
           "motion": ("motion_kernel", "MotionLoop"), "audit": ("Audit", "_Rb_tree"),
           "list": ("candidate_kernel", "split_kernel", "VerletList", "CellGrid", "Granules", "list_walls", "classed",
@@ -88,18 +96,20 @@ def kernel_content(counts):
         code += run(["objdump", "-d", "--no-show-raw-insn", f"--disassemble={symbol}", build / "perf" / "step_timer"])
     instructions = re.findall(r"^ +[0-9a-f]+:\t(\S+)", code, re.M)
     return {"symbol": run(["c++filt", symbols[-1]]).strip() if symbols else "-",
-            "roots": sum(i.startswith("vsqrtpd") for i in instructions),
-            "divisions": sum(i.startswith("vdivpd") for i in instructions), "instructions": len(instructions)}
+            "roots": sum(i.startswith(("vsqrtpd", "vsqrtps")) for i in instructions),
+            "divisions": sum(i.startswith(("vdivpd", "vdivps")) for i in instructions),
+            # The second halves of the rows of motion and force: spin and turn, and nothing else is 32 bytes in.
+            "spins": len(re.findall(r"\tv\S+ .*[ ,]0x20\(%r\w+\)", code)), "instructions": len(instructions)}
 
 
 def effects_of(symbol):
     """Damping, friction, variety and observation of the kernel, out of its demangled name."""
-    numbers = dict(re.findall(r"\(grandamp::kernels::(Damping|Friction|Variety|Observation)\)(\d)", symbol))
+    numbers = dict(re.findall(r"\(grandamp::kernels::(Damping|Friction|Variety|Observation|Precision)\)(\d)", symbol))
     if "ContactEffects" not in symbol:
         return symbol
     source = (perf.parent / "kernels" / "effects.hpp").read_text(encoding="utf-8")
     words = {}
-    for kind in ("Damping", "Friction", "Variety", "Observation"):
+    for kind in ("Damping", "Friction", "Variety", "Observation", "Precision"):
         body = re.sub(r"//.*", "", re.search(rf"enum class {kind} {{(.*?)}}", source, re.S)[1])
         words[kind] = [word.strip() for word in body.split(",") if word.strip()]
     # A name leaves out zeros at its end.
@@ -126,7 +136,7 @@ def measure(file, counted_steps, steps, windows):
             previous = total
             content = kernel_content(counts)
             code.append([row[0], effects_of(content["symbol"]), content["roots"], content["divisions"],
-                         content["instructions"]])
+                         content["spins"], content["instructions"]])
         rows.append(row)
     return rows, code, per_contact[0] / per_contact[5]
 
@@ -147,17 +157,53 @@ kernels, by phase. Without friction there is nothing that turns a granule, so ro
         report.table(head, rows, title)
         report.text(f"Frictionless, one radius, no gravity against the full scene with several radii, whole steps per contact: "
                     f"{100.0 * share:.0f} %. (Of the kernels alone, where at most 60 % is wanted: `perf/run.sh kernels`.)")
+    rows, more = variants(scene("S1_rest"), counted_steps, steps, windows)
+    head = ["instead", "ns", "half range, %", "of double", "contacts per granule", "candidates per granule",
+            "bytes per granule"]
+    if counted_steps:
+        head += ["instructions", *PHASES, "other"]
+    report.table(head, rows, "At rest, several radii: one effect exchanged for another")
+    report.text("Bytes: what the process holds more after the steps than before the granules were placed; of so few "
+                "granules a good part is scratch of fixed size, so only the differences tell: the memory of contacts is "
+                "36 bytes a candidate.")
+    code += more
     if code:
-        report.table(["effects", "the pair kernel that ran (from callgrind)", "square roots", "divisions", "instructions"],
+        report.table(["effects", "the pair kernel that ran (from callgrind)", "square roots", "divisions", "spin and turn", "instructions"],
                      code, "What stands in the pair kernel's code")
         check(code, report)
     report.write()
 
 
+def variants(file, counted_steps, steps, windows):
+    """The bed with several radii and one of its effects exchanged, in turn; their time, instructions and memory."""
+    base = dict(list(stages())[5][1])
+    taken = in_turn({name: lambda s=base | change: step_timer(file, s, steps=steps, warm=20, windows=windows)
+                     for name, change in VARIANTS})
+    rows, code, first = [], [], None
+    for name, change in VARIANTS:
+        of = taken[name][-1]
+        granules = of["granules"]
+        times = [median(t["processor_ns_per_step"]) / granules for t in taken[name]]
+        first = first or median(times)
+        row = [name, number(median(times)), f"{spread(times):.0f}", f"{100.0 * median(times) / first:.0f} %",
+               number(of["contacts_per_granule"]), number(of["candidates_per_granule"]),
+               number(median([t["bytes_per_granule"] for t in taken[name]]))]
+        if counted_steps:
+            counts = counted(file, base | change, counted_steps)
+            phases = {phase: count / counted_steps / granules for phase, count in by_phase(counts).items()}
+            content = kernel_content(counts)
+            row += [number(sum(phases.values())), *(f"{phases[p]:.1f}" for p in phases)]
+            code.append([name, effects_of(content["symbol"]), content["roots"], content["divisions"], content["spins"],
+                         content["instructions"]])
+        rows.append(row)
+    return rows, code
+
+
 def check(code, report):
     """The frictionless kernel must be without friction, by its name and by what it computes."""
     bare, full = code[0], code[4]
-    if "friction none" not in bare[1] or bare[2] >= full[2]:
+    if "friction none" not in bare[1] or bare[2] >= full[2] or bare[4] != 0 or full[4] == 0:
         raise SystemExit(f"the frictionless kernel holds friction: {bare}, {full}")
     report.text(f"Checked: the kernel of the frictionless bed has {bare[2]} vector square roots in its code where friction's "
-                f"has {full[2]} (the slip's length is the one more), {bare[4]} instructions where that has {full[4]}.")
+                f"has {full[2]} (the slip's length is the one more), {bare[5]} instructions where that has {full[5]}, and none of them touches a row of spin or turn "
+                f"(friction's: {full[4]}).")

@@ -54,6 +54,23 @@ TEST_CASE("a run cut at random steps and resumed has the results of one never cu
   }
 }
 
+TEST_CASE("mixed precision: cut and resumed, and with other output, the same bits") {
+  const TemporaryFolder folder;
+  const std::vector<std::string> mixed{"time.precision=mixed"};
+  const SceneDocument document = read_scene_text(small_scene(), "small.toml", mixed);
+  run_scene(document, folder / "whole", threads(1));
+  RunResult result = run_scene(document, folder / "cut", stopping_after(1237));
+  while (result.status == RunStatus::interrupted) result = resume_run(folder / "cut", {}, stopping_after(3001));
+  REQUIRE(result.status == RunStatus::done);
+  check_same(outcomes_of(folder / "cut"), outcomes_of(folder / "whole"));
+  CHECK(nlohmann::json::parse(content_of(folder / "cut/summary.json"))["precision"] == "mixed");
+  for (const char* other : {"output.energy=false", "output.history_interval=7e-6"}) {
+    const std::filesystem::path run = folder / other;
+    run_scene(read_scene_text(small_scene(), "small.toml", {mixed.front(), other}), run, threads(1));
+    check_same_granules(read_final_granules(run / "results.h5"), read_final_granules(folder / "whole/results.h5"));
+  }
+}
+
 TEST_CASE("a finished run says so, and --set time.duration goes on as if it had been meant so from the start") {
   const TemporaryFolder folder;
   // Durations that are whole numbers of a step without rounding, a window that both have, and a closing speed given: an
@@ -116,7 +133,7 @@ TEST_CASE("a change that would alter the past is refused with its key") {
   const TemporaryFolder folder;
   run_scene(scene_of(small_scene()), folder / "run", stopping_after(500));
   for (const std::string key : {"time.step", "granules.0.count", "contact.granule.friction", "seed", "verlet.policy",
-                                "structure.mass", "output.energy", "time.integrator", "colour"}) {
+                                "structure.mass", "output.energy", "time.integrator", "time.precision", "colour"}) {
     CAPTURE(key);
     CHECK_THROWS_WITH_AS(resume_run(folder / "run", {key + "=1"}, threads(1)), doctest::Contains(key.c_str()),
                          UsageError);
@@ -154,7 +171,7 @@ TEST_CASE("instruction sets: other bits are refused, the same bits go on") {
 TEST_CASE("another program's checkpoint, or another scene's, is refused plainly") {
   const TemporaryFolder folder;
   run_scene(scene_of(small_scene()), folder / "run", stopping_after(500));
-  const CheckpointFiles files(folder / "run");
+  CheckpointFiles files(folder / "run");
   const Checkpoint good = read_checkpoint(files.newest);
   CHECK(good.version == version());
   Checkpoint bad = good;
@@ -224,12 +241,86 @@ TEST_CASE("a folder in use by another program is refused") {
   CHECK(refused);
 }
 
-TEST_CASE("nothing to go on from: no folder, no run, a run without checkpoints") {
+TEST_CASE("nothing to go on from: no folder and no run") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH_AS(resume_run(folder / "none", {}, threads(1)), doctest::Contains("no such folder"), FileError);
   std::filesystem::create_directory(folder / "empty");
   CHECK_THROWS_WITH_AS(resume_run(folder / "empty", {}, threads(1)), doctest::Contains("no checkpoint"), FileError);
+}
+
+TEST_CASE("a run without checkpoints: finished it says so, killed it starts anew") {
+  const TemporaryFolder folder;
+  run_scene(scene_of(small_scene()), folder / "whole", threads(1));
   run_scene(read_scene_text(small_scene(), "small.toml", {"output.checkpoint_interval=0"}), folder / "run", threads(1));
   CHECK_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5"));
-  CHECK_THROWS_WITH_AS(resume_run(folder / "run", {}, threads(1)), doctest::Contains("no checkpoint"), FileError);
+  CHECK(resume_run(folder / "run", {}, threads(1)).status == RunStatus::done_before);
+  CHECK_THROWS_WITH_AS(resume_run(folder / "run", {"time.duration=0.06"}, threads(1)),
+                       doctest::Contains("no checkpoint to go on further from"), FileError);
+  std::filesystem::remove(folder / "run/summary.json");
+  write_content(folder / "run/results.h5.new", "what a kill leaves");
+  std::string warned;
+  RunSceneOptions options = threads(1);
+  options.warning = [&warned](const std::string& warning) { warned += warning; };
+  CHECK(resume_run(folder / "run", {}, options).status == RunStatus::done);
+  CHECK(contains(warned, "before its first checkpoint, and starts anew"));
+  check_same(outcomes_of(folder / "run"), outcomes_of(folder / "whole"));
+  CHECK(files_in(folder / "run") == std::vector<std::string>{"results.h5", "scene.toml", "summary.json"});
+}
+
+TEST_CASE("a finished run that goes on further and is killed at once is not called finished") {
+  const TemporaryFolder folder;
+  run_scene(scene_of(small_scene()), folder / "run", threads(1));
+  struct Killed {};
+  for (const bool asked_again : {false, true}) {
+    RunSceneOptions options = threads(1);
+    // The first asks for a checkpoint of what was asked are answered, then it is as if the power went.
+    options.stop_requested = [steps = 0]() mutable -> bool { return ++steps > 3 ? throw Killed{} : false; };
+    CHECK_THROWS_AS(resume_run(folder / "run", {asked_again ? "time.duration=0.06" : "time.duration=0.055"}, options),
+                    Killed);
+    CHECK_FALSE(std::filesystem::exists(folder / "run/summary.json"));
+  }
+  const RunResult result = resume_run(folder / "run", {}, threads(1));
+  CHECK(result.status == RunStatus::done);
+  CHECK(result.steps == 12000); // 0.06 s, though nobody said so again
+  CHECK(read_final_granules(folder / "run/results.h5").time == doctest::Approx(0.06));
+}
+
+TEST_CASE("checkpoints and results of different runs are not mixed") {
+  const TemporaryFolder folder;
+  run_scene(scene_of(small_scene()), folder / "run", stopping_after(3000));
+  run_scene(scene_of(replaced(small_scene(), "seed = 3", "seed = 4")), folder / "other", stopping_after(2000));
+  std::filesystem::copy_file(folder / "other/checkpoint.h5", folder / "run/checkpoint.h5",
+                             std::filesystem::copy_options::overwrite_existing);
+  CHECK_THROWS_WITH_AS(resume_run(folder / "run", {}, threads(1)), doctest::Contains("of different runs"), FileError);
+}
+
+TEST_CASE("a damaged checkpoint does not take the place of its whole predecessor") {
+  const TemporaryFolder folder;
+  run_scene(scene_of(small_scene()), folder / "whole", threads(1));
+  run_scene(scene_of(small_scene()), folder / "run", stopping_after(2000));
+  resume_run(folder / "run", {}, stopping_after(2000));
+  CheckpointFiles files(folder / "run");
+  std::string damaged = content_of(files.newest);
+  damaged[damaged.size() / 2] ^= 4;
+  write_content(files.newest, damaged);
+  std::string warned;
+  RunSceneOptions options = stopping_after(1000);
+  options.warning = [&warned](const std::string& warning) { warned += warning; };
+  resume_run(folder / "run", {}, options);
+  CHECK(contains(warned, "checkpoint.h5: damaged: "));
+  CHECK(contains(warned, "going on from checkpoint.previous.h5"));
+  CHECK(read_checkpoint(files.newest).state.step_number == 3000);
+  CHECK(read_checkpoint(files.previous).state.step_number == 2000);
+  resume_run(folder / "run", {}, threads(1));
+  check_same(outcomes_of(folder / "run"), outcomes_of(folder / "whole"));
+}
+
+TEST_CASE("a checkpoint that a kill left on its way to its place is taken there") {
+  const TemporaryFolder folder;
+  run_scene(scene_of(small_scene()), folder / "run", threads(1));
+  const CheckpointFiles files(folder / "run");
+  std::filesystem::rename(files.newest, files.next);
+  CHECK(resume_run(folder / "run", {}, threads(1)).status == RunStatus::done_before);
+  CHECK(std::filesystem::exists(files.newest));
+  CHECK_FALSE(std::filesystem::exists(files.next));
 }

@@ -166,6 +166,46 @@ TEST_CASE("a state put back goes on by the same bits: 25,000 granules in several
   check_cut(scene, 300, 3, 2, 1);
 }
 
+TEST_CASE("a pouring cut at many steps and gone on with comes to the same bed by the same bits") {
+  Scene scene = damper(60);
+  scene.packing = PackingKind::settled;
+  Population& population = scene.populations[0];
+  population.placed = false; // by count
+  population.positions.clear();
+  population.velocities.clear();
+  population.spins.clear();
+  const Simulation whole(scene, with_threads(1));
+  struct Cut {};
+  RunState state;
+  bool begun = false;
+  for (int part = 0, cuts = 0;; ++part) {
+    REQUIRE(part < 1000);
+    RunOptions options = with_threads(1 + part % 2);
+    options.poured_so_far = begun ? &state : nullptr;
+    options.pouring_progress = [&, steps = 0](const PouringProgress& now) mutable {
+      if (!now.save || ++steps < 37 + 977 * (part % 5)) return;
+      RunState saved; // apart from the one that this part began with
+      now.save(saved);
+      state = std::move(saved);
+      begun = true;
+      ++cuts;
+      throw Cut{};
+    };
+    try {
+      Simulation last(scene, options);
+      CHECK(cuts > 5);
+      CHECK(differences(whole.state(), last.state()) == "");
+      break;
+    } catch (const Cut&) {
+    }
+  }
+  Scene other = scene;
+  other.populations[0].radius *= 1.01;
+  RunOptions options = with_threads(1);
+  options.poured_so_far = &state;
+  CHECK_THROWS_AS(Simulation(other, options), StateError);
+}
+
 TEST_CASE("a run that was to end goes on, and its statistics with it") {
   Scene scene = damper(40);
   scene.time.step = 0x1p-17; // durations are then whole steps without rounding

@@ -158,6 +158,7 @@ checkpoint_interval = 0
                             .scene;
     CHECK(scene.enclosure.shape == EnclosureShape::cylinder);
     CHECK(scene.enclosure.axis == 0);
+    CHECK(scene.time.precision == Precision::full);
     REQUIRE(scene.populations.size() == 1);
     const Population& granules = scene.populations[0];
     CHECK(granules.placed);

@@ -213,8 +213,8 @@ const std::vector<Variation>& variations() {
          s.contact.wall->alpha.reset();
          s.contact.granule.restitution.reset();
          s.contact.wall->restitution.reset();
-         s.contact.granule.normal_damping = 1.0;
-         s.contact.wall->normal_damping = 1.0;
+         s.contact.granule.normal_damping = 0.8;
+         s.contact.wall->normal_damping = 0.8;
        }},
       {"a cylinder along x", [](Scene& s) { put_in_cylinder(s, 0); }},
       {"a cylinder along y", [](Scene& s) { put_in_cylinder(s, 1); }},

@@ -65,7 +65,7 @@ TEST_CASE("the plan of a damper") {
   CHECK(plan.effects ==
         Names{"hertz", "tsuji", "coulomb", "rotation", "gravity", "box", "structure", "harmonic", "energy"});
   for (const char* name :
-       {"spring", "linear", "polydisperse", "materials", "cylinder", "prescribed", "audit", "verlet"})
+       {"spring", "linear", "polydisperse", "materials", "cylinder", "prescribed", "audit", "verlet", "mixed"})
     CHECK(has(plan.effects_left_out, name));
   CHECK(plan.time_step * static_cast<double>(plan.steps) == doctest::Approx(7.0).epsilon(1e-15));
   CHECK(plan.skin_tuned);
@@ -83,6 +83,24 @@ TEST_CASE("the plan of a damper") {
         doctest::Approx(15.9155 / std::sqrt(1.0 + plan.damper.mass_ratio)).epsilon(1e-5));
   CHECK(plan.damper.acceleration ==
         doctest::Approx(0.02499 * std::pow(2.0 * 3.14159265 * 15.91, 2) / 9.81).epsilon(1e-3));
+}
+
+TEST_CASE("mixed precision is an effect, and refused by its key where there is none") {
+  Scene scene = damper();
+  scene.time.precision = Precision::mixed;
+  CHECK(has(make_plan(scene).effects, "mixed"));
+  scene.contact.friction = FrictionLaw::none;
+  scene.contact.granule.friction.reset();
+  if (scene.contact.wall) scene.contact.wall->friction.reset();
+  CHECK(faults(scene).empty());
+  scene.contact.tension = false;
+  CHECK(faults(scene) == Names{"time.precision"});
+  scene = damper();
+  scene.time.precision = Precision::mixed;
+  scene.contact.friction = FrictionLaw::spring;
+  CHECK(has(faults(scene), "time.precision"));
+  scene.time.precision = Precision::full;
+  CHECK_FALSE(has(faults(scene), "time.precision"));
 }
 
 TEST_CASE("effects follow from the scene") {

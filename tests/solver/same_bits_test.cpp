@@ -95,15 +95,31 @@ TEST_CASE("the same bits on 1 and 2 threads with two sizes and the verlet integr
   check_same(run(scene, 1, ""), run(scene, 2, ""));
 }
 
+TEST_CASE("mixed precision: the same bits on 1, 2 and 4 threads, and other bits than in double") {
+  Scene scene = cloud(24000, 0.066);
+  const Outcome full = run(scene, 2, "");
+  scene.time.precision = Precision::mixed;
+  const Outcome alone = run(scene, 1, "");
+  CHECK(alone.sample.contacts > 100);
+  CHECK_FALSE(same_bits(alone.granules.velocity, full.granules.velocity));
+  for (const int threads : {2, 4}) {
+    CAPTURE(threads);
+    check_same(alone, run(scene, threads, ""));
+  }
+}
+
 TEST_CASE("AVX2 and AVX-512 give the same bits") {
   if (!kernels::available(kernels::InstructionSet::avx512)) {
     MESSAGE("skipped: this machine does not run AVX-512");
     return;
   }
-  Scene scene = cloud(3000, 0.033);
-  check_same(run(scene, 1, "avx2"), run(scene, 1, "avx512"));
-  scene.populations.push_back(balls(500, 0.8e-3));
-  check_same(run(scene, 1, "avx2"), run(scene, 1, "avx512"));
+  for (const Precision precision : {Precision::full, Precision::mixed}) {
+    Scene scene = cloud(3000, 0.033);
+    scene.time.precision = precision;
+    check_same(run(scene, 1, "avx2"), run(scene, 1, "avx512"));
+    scene.populations.push_back(balls(500, 0.8e-3));
+    check_same(run(scene, 1, "avx2"), run(scene, 1, "avx512"));
+  }
 }
 
 TEST_CASE("a few granules stay on one thread unless told otherwise") {

@@ -36,10 +36,22 @@ inline std::vector<ContactEffects> contact_effects() {
   return all;
 }
 
+/// Those that have kernels in mixed precision, in that.
+inline std::vector<ContactEffects> mixed_effects() {
+  std::vector<ContactEffects> all;
+  for (ContactEffects effects : contact_effects())
+    if (has_mixed_kernel(effects)) {
+      effects.precision = Precision::mixed;
+      all.push_back(effects);
+    }
+  return all;
+}
+
 inline std::string describe(InstructionSet set, ContactEffects e) {
   return std::string(name(set)) + ", damping " + std::to_string(static_cast<int>(e.damping)) + ", friction " +
          std::to_string(static_cast<int>(e.friction)) + ", variety " + std::to_string(static_cast<int>(e.variety)) +
-         ", observation " + std::to_string(static_cast<int>(e.observation));
+         ", observation " + std::to_string(static_cast<int>(e.observation)) +
+         (e.precision == Precision::mixed ? ", mixed" : "");
 }
 
 /// Granules in the oracle's form and in the kernels' rows.
@@ -172,7 +184,7 @@ struct Springs {
   static constexpr std::uint32_t now = 1000;
 
   explicit Springs(std::size_t entries)
-      : before(entries), rows(entries), touched(entries, 0), slots(entries + pair_chunk + list_padding) {
+      : before(entries), rows(entries), touched(entries, 0), slots(entries + pair_chunk + contact_padding) {
     for (auto& row : rows) row = {};
   }
   void load(std::size_t entry, double overlap, double reduced_radius, Random& random) {

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -58,37 +60,48 @@ void check(double found, double expected, double last, const char* what) {
 }
 
 const std::vector<ElasticImpact>& elastic_impacts() {
-  static const std::vector<ElasticImpact> all{
-      {"1: glass spheres", glass, 0.01, 20.0, Partner::twin, {2.741127e-4, 10696.89, 4.033952e-5}, {}},
-      {"1: limestone spheres", limestone, 0.01, 20.0, Partner::twin, {3.68304e-4, 7108.24, 5.420109e-5}, {}},
-      {"2: aluminium alloy, rigid wall",
-       aluminium_alloy,
-       0.1,
-       0.2,
-       Partner::rigid_wall,
-       {4.971718e-5, 11369.86, 7.316578e-4},
-       {}},
-      {"2: magnesium alloy, rigid wall",
-       magnesium_alloy,
-       0.1,
-       0.2,
-       Partner::rigid_wall,
-       {5.212329e-5, 7232.68, 7.670671e-4},
-       {}},
-      {"3: aluminium oxide, lossless",
-       aluminium_oxide,
-       0.0025,
-       3.9,
-       Partner::wall_a_thousand_times_stiffer,
-       {8.092e-6, 615.1, 6.107e-6},
-       {}},
-      {"3: cast iron, lossless",
-       cast_iron,
-       0.0025,
-       3.9,
-       Partner::wall_a_thousand_times_stiffer,
-       {1.7196e-5, 506.6, 1.298e-5},
-       {}}};
+  static const std::vector<ElasticImpact> all{{"1: glass spheres",
+                                               glass,
+                                               0.01,
+                                               20.0,
+                                               Partner::twin,
+                                               {2.741127e-4, 10696.89, 4.033952e-5},
+                                               {0.000274113507, 10696.9361, 4.03386351e-05}},
+                                              {"1: limestone spheres",
+                                               limestone,
+                                               0.01,
+                                               20.0,
+                                               Partner::twin,
+                                               {3.68304e-4, 7108.24, 5.420109e-5},
+                                               {0.000368305107, 7108.2726, 5.41999024e-05}},
+                                              {"2: aluminium alloy, rigid wall",
+                                               aluminium_alloy,
+                                               0.1,
+                                               0.2,
+                                               Partner::rigid_wall,
+                                               {4.971718e-5, 11369.86, 7.316578e-4},
+                                               {4.97173211e-05, 11369.9083, 0.000731641758}},
+                                              {"2: magnesium alloy, rigid wall",
+                                               magnesium_alloy,
+                                               0.1,
+                                               0.2,
+                                               Partner::rigid_wall,
+                                               {5.212329e-5, 7232.68, 7.670671e-4},
+                                               {5.21234412e-05, 7232.71285, 0.000767050302}},
+                                              {"3: aluminium oxide, lossless",
+                                               aluminium_oxide,
+                                               0.0025,
+                                               3.9,
+                                               Partner::wall_a_thousand_times_stiffer,
+                                               {8.092e-6, 615.1, 6.107e-6},
+                                               {8.09206629e-06, 615.108277, 6.10682675e-06}},
+                                              {"3: cast iron, lossless",
+                                               cast_iron,
+                                               0.0025,
+                                               3.9,
+                                               Partner::wall_a_thousand_times_stiffer,
+                                               {1.7196e-5, 506.6, 1.298e-5},
+                                               {1.71956373e-05, 506.559892, 1.29770039e-05}}};
   return all;
 }
 
@@ -109,8 +122,7 @@ TEST_CASE("Chung & Ooi 1 to 3: elastic impacts of spheres on each other and on a
     }
     found.overlap = run.simulation().guards().max_overlap * hit.radius;
     found.force = 2.5 * elastic / found.overlap; // Hertz: the energy is 2/5 F d
-    MESSAGE(doctest::String(std::string(hit.name).c_str()) << ": {" << doctest::toString(found.overlap * 1e9) << "e-9, "
-                                                           << found.force << ", " << found.duration * 1e9 << "e-9}");
+    MESSAGE(fmt::format("{}: {{{:.9g}, {:.9g}, {:.9g}}}", hit.name, found.overlap, found.force, found.duration));
     check(found.overlap, hit.closed_form.overlap, hit.last.overlap, "overlap");
     check(found.force, hit.closed_form.force, hit.last.force, "force");
     check(found.duration, hit.closed_form.duration, hit.last.duration, "duration");
@@ -134,45 +146,128 @@ TEST_CASE("Chung & Ooi 3: the restitution that comes out is the one that went in
       }
 }
 
+namespace {
+
+constexpr double oblique_radius = 0.0025, oblique_speed = 3.9, oblique_friction = 0.092, oblique_restitution = 0.98;
+
+Scene oblique_impact(double angle) {
+  Scene scene =
+      impact(aluminium_oxide, oblique_radius, oblique_speed * std::cos(angle), Partner::wall_a_thousand_times_stiffer);
+  scene.populations[0].velocities[0][0] = oblique_speed * std::sin(angle);
+  scene.contact.damping = NormalDamping::tsuji;
+  scene.contact.friction = FrictionLaw::spring;
+  scene.contact.granule.restitution = scene.contact.wall->restitution = oblique_restitution;
+  scene.contact.granule.friction = scene.contact.wall->friction = oblique_friction;
+  last_for(scene, 1.3);
+  return scene;
+}
+
+/// Centre's velocity along x and z after the hit, and the velocity of the surface, forward rolling negative (m/s).
+ObliqueImpact outcome(double angle, double vx, double vz, double rolling) {
+  return {angle * 180.0 / std::numbers::pi, vx / (oblique_speed * std::sin(angle)), rolling / oblique_radius,
+          std::atan2(vx + rolling, vz) * 180.0 / std::numbers::pi, false};
+}
+
+/// The same hit by the spring as published programs have it, f = -k_t sqrt(d) s at most mu F_n, in a loop of its own.
+ObliqueImpact with_plain_spring(double angle) {
+  const Material& m = aluminium_oxide;
+  const double mass = sphere_mass(oblique_radius, m.density);
+  const double modulus = m.young / (1.0 - m.poisson * m.poisson) / (1.0 + 1.0e-3);
+  const double shear = m.young / (2.0 * (1.0 + m.poisson) * (2.0 - m.poisson)) / (1.0 + 1.0e-3);
+  const double stiffness = 4.0 / 3.0 * modulus * std::sqrt(oblique_radius);
+  const double tangential = 8.0 * shear * std::sqrt(oblique_radius);
+  const double logarithm = std::log(oblique_restitution);
+  const double alpha = -std::sqrt(5.0) * logarithm / std::hypot(logarithm, std::numbers::pi);
+  double vx = oblique_speed * std::sin(angle), vz = -oblique_speed * std::cos(angle), rolling = 0.0;
+  double overlap = 0.0, stretch = 0.0;
+  const double step = 1.0e-10;
+  do {
+    overlap -= vz * step;
+    stretch += (vx + rolling) * step;
+    const double root = std::sqrt(std::max(0.0, overlap));
+    const double normal = stiffness * overlap * root - alpha * std::sqrt(mass * stiffness * root) * vz;
+    double force = tangential * root * stretch;
+    const double most = oblique_friction * std::abs(normal);
+    if (std::abs(force) > most) {
+      force = std::copysign(most, force);
+      stretch = force / (tangential * root);
+    }
+    vz += normal / mass * step;
+    vx -= force / mass * step;
+    rolling -= 2.5 * force / mass * step;
+  } while (overlap > 0.0);
+  return outcome(angle, vx, vz, rolling);
+}
+
+} // namespace
+
 TEST_CASE("Chung & Ooi 4: oblique impacts from rolling to sliding") {
   const std::vector<std::pair<ObliqueImpact, ObliqueImpact>> hits{
       // Published or closed form, and this program's last.
-      {{5.0, 0.948, -19.0, 3.8, false}, {}},     {{10.0, 0.687, -213.0, -1.6, false}, {}},
-      {{15.0, 0.624, -378.0, -5.5, false}, {}},  {{20.0, 0.616, -511.0, -7.5, false}, {}},
-      {{25.0, 0.634, -599.0, -7.5, false}, {}},  {{30.0, 0.684, -617.0, -3.5, false}, {}},
-      {{35.0, 0.737, -582.0, 3.4, false}, {}},   {{40.0, 0.7829, -544.2, 11.62, true}, {}},
-      {{50.0, 0.8471, -456.7, 29.49, true}, {}}, {{60.0, 0.8948, -355.2, 48.16, true}, {}},
-      {{70.0, 0.9337, -243.0, 65.09, true}, {}}, {{80.0, 0.9679, -123.4, 78.98, true}, {}},
-      {{85.0, 0.9841, -61.9, 84.81, true}, {}}};
-  constexpr double radius = 0.0025, speed = 3.9, friction = 0.092;
+      {{5.0, 0.948, -19.0, 3.8, false}, {5.0, 0.859883706, -47.4742279, 2.61046415, false}},
+      {{10.0, 0.687, -213.0, -1.6, false}, {10.0, 0.707309809, -197.632423, -0.229412285, false}},
+      {{15.0, 0.624, -378.0, -5.5, false}, {15.0, 0.628911067, -373.491359, -4.62885847, false}},
+      {{20.0, 0.616, -511.0, -7.5, false}, {20.0, 0.618405314, -507.609324, -7.0496102, false}},
+      {{25.0, 0.634, -599.0, -7.5, false}, {25.0, 0.637239487, -596.39826, -7.2502973, false}},
+      {{30.0, 0.684, -617.0, -3.5, false}, {30.0, 0.684480876, -613.822754, -3.45465388, false}},
+      {{35.0, 0.737, -582.0, 3.4, false}, {35.0, 0.739829681, -580.685161, 3.71429925, false}},
+      {{40.0, 0.7829, -544.2, 11.62, true}, {40.0, 0.782891875, -543.107892, 11.6719806, true}},
+      {{50.0, 0.8471, -456.7, 29.49, true}, {50.0, 0.847136747, -455.848413, 29.5227095, true}},
+      {{60.0, 0.8948, -355.2, 48.16, true}, {60.0, 0.894821041, -354.706269, 48.1749337, true}},
+      {{70.0, 0.9337, -243.0, 65.09, true}, {70.0, 0.933693634, -242.729279, 65.0907388, true}},
+      {{80.0, 0.9679, -123.4, 78.98, true}, {80.0, 0.967877618, -123.294234, 78.9834111, true}},
+      {{85.0, 0.9841, -61.9, 84.81, true}, {85.0, 0.984061771, -61.8994826, 84.8115233, true}}};
+  /// Deviations over the published values, summed; digitised curves are held to the shares that are stated for them.
+  double restitution_off = 0.0, spin_off = 0.0, rebound_off = 0.0, restitutions = 0.0, spins = 0.0, rebounds = 0.0;
   for (const auto& [expected, last] : hits) {
     CAPTURE(expected.degrees);
     const double angle = expected.degrees * std::numbers::pi / 180.0;
-    Scene scene = impact(aluminium_oxide, radius, speed * std::cos(angle), Partner::wall_a_thousand_times_stiffer);
-    scene.populations[0].velocities[0][0] = speed * std::sin(angle);
-    scene.contact.damping = NormalDamping::tsuji;
-    scene.contact.friction = FrictionLaw::spring;
-    scene.contact.granule.restitution = scene.contact.wall->restitution = 0.98;
-    scene.contact.granule.friction = scene.contact.wall->friction = friction;
-    last_for(scene, 1.3);
-    SolverRun run(scene);
+    SolverRun run(oblique_impact(angle));
     while (!run.simulation().finished()) run.step();
     const GranuleTable end = run.granules();
-    ObliqueImpact found;
-    found.tangential_restitution = end.velocity[0][0] / (speed * std::sin(angle));
-    found.spin = -end.spin[0][1]; // forward rolling is about +y here, and about the other way in the paper
-    const double slip = end.velocity[0][0] - radius * end.spin[0][1];
-    found.rebound_degrees = std::atan2(slip, end.velocity[0][2]) * 180.0 / std::numbers::pi;
-    MESSAGE(expected.degrees << " degrees: " << found.tangential_restitution << ", " << found.spin << ", "
-                             << found.rebound_degrees << "; published " << expected.tangential_restitution << ", "
-                             << expected.spin << ", " << expected.rebound_degrees);
-    const double restitution_band = expected.slides_throughout ? closed_form_tolerance : 0.03;
-    CHECK(found.tangential_restitution == doctest::Approx(expected.tangential_restitution).epsilon(restitution_band));
-    const double spin_band = expected.slides_throughout ? 6.0 : 25.0; // rad/s: 1 % and 4 % of the largest
-    CHECK(std::abs(found.spin - expected.spin) < spin_band);
-    CHECK(std::abs(found.rebound_degrees - expected.rebound_degrees) < (expected.slides_throughout ? 0.5 : 1.5));
+    const ObliqueImpact found =
+        outcome(angle, end.velocity[0][0], end.velocity[0][2], -oblique_radius * end.spin[0][1]);
+    MESSAGE(fmt::format("{} degrees: {:.9g}, {:.9g}, {:.9g}; published {}, {}, {}", expected.degrees,
+                        found.tangential_restitution, found.spin, found.rebound_degrees,
+                        expected.tangential_restitution, expected.spin, expected.rebound_degrees));
+    if (expected.slides_throughout) {
+      CHECK(found.tangential_restitution ==
+            doctest::Approx(expected.tangential_restitution).epsilon(closed_form_tolerance));
+      CHECK(found.spin == doctest::Approx(expected.spin).epsilon(closed_form_tolerance));
+      CHECK(found.rebound_degrees == doctest::Approx(expected.rebound_degrees).epsilon(closed_form_tolerance));
+    }
+    restitution_off += std::abs(found.tangential_restitution - expected.tangential_restitution);
+    spin_off += std::abs(found.spin - expected.spin);
+    rebound_off += std::abs(found.rebound_degrees - expected.rebound_degrees);
+    restitutions += expected.tangential_restitution;
+    spins += std::abs(expected.spin);
+    rebounds += std::abs(expected.rebound_degrees);
     CHECK(found.tangential_restitution == doctest::Approx(last.tangential_restitution).epsilon(last_result_tolerance));
     CHECK(found.spin == doctest::Approx(last.spin).epsilon(last_result_tolerance));
     CHECK(found.rebound_degrees == doctest::Approx(last.rebound_degrees).epsilon(last_result_tolerance));
+  }
+  MESSAGE(fmt::format("off the published curves by {:.2f} % (restitution), {:.2f} % (spin), {:.2f} % (rebound)",
+                      100.0 * restitution_off / restitutions, 100.0 * spin_off / spins,
+                      100.0 * rebound_off / rebounds));
+  CHECK(restitution_off / restitutions < 0.016);
+  CHECK(spin_off / spins < 0.022);
+  CHECK(rebound_off / rebounds < 0.025);
+}
+
+TEST_CASE("Chung & Ooi 4, sticking: what the spring that makes no energy changes at small angles") {
+  // At 5 degrees the contact never slides on its way in. The published curve has the spring f = -k_t sqrt(d) s, which
+  // this loop has too and which gives more back than it took; ours lies below. From 10 degrees on they agree.
+  const ObliqueImpact plain = with_plain_spring(5.0 * std::numbers::pi / 180.0);
+  MESSAGE(fmt::format("5 degrees by f = -k_t sqrt(d) s: {:.4f}, {:.2f}, {:.3f}; published 0.948, -19, 3.8",
+                      plain.tangential_restitution, plain.spin, plain.rebound_degrees));
+  CHECK(plain.tangential_restitution == doctest::Approx(0.948).epsilon(0.016));
+  for (const double degrees : {20.0, 30.0, 40.0, 60.0}) {
+    CAPTURE(degrees);
+    const double angle = degrees * std::numbers::pi / 180.0;
+    SolverRun run(oblique_impact(angle));
+    while (!run.simulation().finished()) run.step();
+    const ObliqueImpact other = with_plain_spring(angle);
+    CHECK(run.granules().velocity[0][0] / (oblique_speed * std::sin(angle)) ==
+          doctest::Approx(other.tangential_restitution).epsilon(0.01));
   }
 }

@@ -1,0 +1,197 @@
+#include "io/svg_plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+namespace grandamp {
+
+namespace {
+
+constexpr double width = 640.0, height = 420.0;
+constexpr double left = 72.0, right = 20.0, top = 36.0, bottom = 52.0;
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '>')
+      result += "&gt;";
+    else
+      result += c;
+  }
+  return result;
+}
+
+/// Values to places along one side of the frame.
+class Scale {
+public:
+  Scale(bool logarithmic, double from, double to) : logarithmic_(logarithmic), from_(from), to_(to) {}
+
+  bool shows(double value) const { return std::isfinite(value) && (!logarithmic_ || value > 0.0); }
+  void include(double value) {
+    if (!shows(value)) return;
+    low_ = std::min(low_, value);
+    high_ = std::max(high_, value);
+  }
+  void close() {
+    if (!(low_ <= high_)) low_ = high_ = 1.0;
+    if (logarithmic_) {
+      low_ = std::pow(10.0, std::floor(std::log10(low_) * 2.0 + 1e-9) / 2.0) * 0.95;
+      high_ = std::pow(10.0, std::ceil(std::log10(high_) * 2.0 - 1e-9) / 2.0) * 1.05;
+    } else {
+      low_ = std::min(0.0, low_);
+      high_ = high_ > low_ ? high_ + 0.08 * (high_ - low_) : low_ + 1.0;
+    }
+  }
+  double at(double value) const {
+    const double clamped = std::clamp(value, low_, high_);
+    const double share =
+        logarithmic_ ? std::log(clamped / low_) / std::log(high_ / low_) : (clamped - low_) / (high_ - low_);
+    return from_ + share * (to_ - from_);
+  }
+  std::vector<double> ticks() const {
+    std::vector<double> ticks;
+    if (logarithmic_) {
+      for (double decade = std::pow(10.0, std::floor(std::log10(low_))); decade <= high_; decade *= 10.0)
+        for (const double step : {1.0, 2.0, 5.0})
+          if (decade * step >= low_ && decade * step <= high_) ticks.push_back(decade * step);
+      return ticks;
+    }
+    const double raw = (high_ - low_) / 5.0, decade = std::pow(10.0, std::floor(std::log10(raw)));
+    const double step = raw / decade < 1.5 ? decade : raw / decade < 3.5 ? 2.0 * decade : 5.0 * decade;
+    for (double tick = std::ceil(low_ / step) * step; tick <= high_; tick += step) ticks.push_back(tick);
+    return ticks;
+  }
+
+private:
+  bool logarithmic_;
+  double from_, to_;
+  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+};
+
+class Drawing {
+public:
+  Drawing(const Plot& plot)
+      : plot_(plot), x_(plot.x.logarithmic, left, width - right), y_(plot.y.logarithmic, height - bottom, top) {
+    for (const PlotSeries& series : plot.series)
+      for (const PlotPoint& point : series.points) {
+        if (!shown(point)) continue;
+        x_.include(point.x);
+        y_.include(point.y);
+        if (point.high > point.low) y_.include(point.high);
+      }
+    if (!plot.categories.empty()) {
+      x_.include(-0.6);
+      x_.include(static_cast<double>(plot.categories.size()) - 0.4);
+    }
+    if (plot.categories.empty()) x_.close();
+    y_.close();
+  }
+
+  std::string text() {
+    out_ =
+        fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:g} {1:g}" width="{0:g}" height="{1:g}" )"
+                    R"(font-family="sans-serif" font-size="11"><rect width="100%" height="100%" fill="white"/>)",
+                    width, height);
+    write(0.5 * width, 20.0, plot_.title, R"(text-anchor="middle" font-size="13")");
+    frame();
+    double legend = top + 14.0;
+    for (const PlotSeries& series : plot_.series) {
+      draw(series);
+      if (series.name.empty()) continue;
+      mark(width - right - 12.0, legend - 4.0, series);
+      write(width - right - 22.0, legend, series.name, R"(text-anchor="end")");
+      legend += 15.0;
+    }
+    return out_ + "</svg>\n";
+  }
+
+private:
+  bool shown(const PlotPoint& point) const { return x_.shows(point.x) && y_.shows(point.y); }
+
+  void write(double x, double y, const std::string& text, const std::string& attributes) {
+    out_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, attributes, escaped(text));
+  }
+  void line(double x0, double y0, double x1, double y1, const char* colour, double thickness) {
+    out_ += fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\" stroke-width=\"{:g}\"/>\n", x0, y0, x1,
+                        y1, colour, thickness);
+  }
+
+  void frame() {
+    for (const double tick : y_.ticks()) {
+      line(left, y_.at(tick), width - right, y_.at(tick), "#dddddd", 0.7);
+      write(left - 6.0, y_.at(tick) + 4.0, fmt::format("{:g}", tick), R"(text-anchor="end")");
+    }
+    if (plot_.categories.empty())
+      for (const double tick : x_.ticks()) {
+        line(x_.at(tick), top, x_.at(tick), height - bottom, "#dddddd", 0.7);
+        write(x_.at(tick), height - bottom + 16.0, fmt::format("{:g}", tick), R"(text-anchor="middle")");
+      }
+    for (std::size_t k = 0; k < plot_.categories.size(); ++k)
+      write(place(k), height - bottom + 16.0, plot_.categories[k], R"(text-anchor="middle")");
+    out_ +=
+        fmt::format("<rect x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" fill=\"none\" stroke=\"#666666\"/>\n",
+                    left, top, width - left - right, height - top - bottom);
+    write(0.5 * (left + width - right), height - 14.0, plot_.x.name, R"(text-anchor="middle")");
+    out_ += fmt::format("<text transform=\"translate(16 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                        0.5 * (top + height - bottom), escaped(plot_.y.name));
+  }
+
+  /// The middle of the bar of that number.
+  double place(std::size_t k) const {
+    const double share = (width - left - right) / static_cast<double>(plot_.categories.size());
+    return left + share * (static_cast<double>(k) + 0.5);
+  }
+
+  void mark(double x, double y, const PlotSeries& series) {
+    out_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\" stroke=\"{}\"/>\n", x, y,
+                        series.hollow ? "white" : series.colour, series.colour);
+  }
+
+  void draw(const PlotSeries& series) {
+    if (!plot_.categories.empty()) return bars(series);
+    if (series.line) {
+      std::string path;
+      for (const PlotPoint& point : series.points)
+        if (shown(point))
+          path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x_.at(point.x), y_.at(point.y));
+      out_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:g}\"/>\n", path, series.colour,
+                          series.width);
+    }
+    for (const PlotPoint& point : series.points) {
+      if (!shown(point)) continue;
+      const double x = x_.at(point.x), y = y_.at(point.y);
+      if (point.high > point.low) line(x, y_.at(point.low), x, y_.at(point.high), series.colour.c_str(), 0.8);
+      if (series.dots) mark(x, y, series);
+      if (!point.label.empty()) write(x + 6.0, y - 5.0, point.label, R"(font-size="9" fill="#444444")");
+    }
+  }
+
+  void bars(const PlotSeries& series) {
+    const double half = 0.3 * (width - left - right) / static_cast<double>(plot_.categories.size());
+    for (std::size_t k = 0; k < series.points.size(); ++k) {
+      const PlotPoint& point = series.points[k];
+      const double y = y_.at(point.y);
+      out_ += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n",
+                          place(k) - half, y, 2.0 * half, height - bottom - y, series.colour);
+      write(place(k), y - 5.0, point.label, R"(text-anchor="middle")");
+    }
+  }
+
+  const Plot& plot_;
+  Scale x_, y_;
+  std::string out_;
+};
+
+} // namespace
+
+std::string Plot::svg() const {
+  return Drawing(*this).text();
+}
+
+} // namespace grandamp
