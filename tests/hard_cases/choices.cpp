@@ -1,6 +1,7 @@
 #include "tests/hard_cases/choices.hpp"
 
 #include <array>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,8 @@ template <class Value> struct Level {
 constexpr std::array friction_laws{Level<FrictionLaw>{FrictionLaw::coulomb, "coulomb"},
                                    Level<FrictionLaw>{FrictionLaw::spring, "spring"},
                                    Level<FrictionLaw>{FrictionLaw::none, "none"}};
+constexpr std::array precisions{Level<Precision>{Precision::full, "double"},
+                                Level<Precision>{Precision::mixed, "mixed"}};
 constexpr std::array policies{
     Level<ListPolicy>{ListPolicy::guarded, "guarded"},     Level<ListPolicy>{ListPolicy::displacement, "displacement"},
     Level<ListPolicy>{ListPolicy::none, "none"},           Level<ListPolicy>{ListPolicy::all_pairs, "all-pairs"},
@@ -35,56 +38,60 @@ template <class Levels, class Value> const char* name_of(const Levels& levels, V
 } // namespace
 
 std::string told(const Choice& choice) {
-  return fmt::format("{}, {}, {:g}, {}, {}", name_of(friction_laws, choice.friction), name_of(policies, choice.policy),
-                     choice.steps_per_contact, name_of(integrators, choice.integrator), choice.seed);
+  return fmt::format("{}, {}, {}, {:g}, {}, {}", name_of(friction_laws, choice.friction),
+                     name_of(precisions, choice.precision), name_of(policies, choice.policy), choice.steps_per_contact,
+                     name_of(integrators, choice.integrator), choice.seed);
 }
 
-std::vector<std::vector<std::size_t>> pairwise_rows(const std::vector<std::size_t>& levels) {
+std::vector<std::vector<std::size_t>>
+pairwise_rows(const std::vector<std::size_t>& levels,
+              const std::function<bool(const std::vector<std::size_t>&)>& allowed) {
   const std::size_t factors = levels.size();
-  std::vector<std::vector<std::vector<bool>>> covered(factors * factors);
-  std::size_t left = 0;
-  for (std::size_t a = 0; a < factors; ++a)
-    for (std::size_t b = a + 1; b < factors; ++b) {
-      covered[a * factors + b].assign(levels[a], std::vector<bool>(levels[b], false));
-      left += levels[a] * levels[b];
+  std::vector<std::vector<std::size_t>> candidates;
+  std::vector<std::size_t> row(factors, 0);
+  for (bool more = true; more;) {
+    if (!allowed || allowed(row)) candidates.push_back(row);
+    more = false;
+    for (std::size_t f = factors; f-- > 0 && !more;) {
+      row[f] = row[f] + 1 < levels[f] ? row[f] + 1 : 0;
+      more = row[f] != 0;
     }
-  const auto for_pairs = [&](const std::vector<std::size_t>& row, const auto& visit) {
+  }
+  std::set<std::array<std::size_t, 4>> left; // two factors and their levels
+  const auto for_pairs = [&](const std::vector<std::size_t>& of, const auto& visit) {
     for (std::size_t a = 0; a < factors; ++a)
-      for (std::size_t b = a + 1; b < factors; ++b) visit(covered[a * factors + b][row[a]], row[b]);
+      for (std::size_t b = a + 1; b < factors; ++b) visit(std::array{a, b, of[a], of[b]});
   };
+  for (const auto& candidate : candidates) for_pairs(candidate, [&](const auto& pair) { left.insert(pair); });
   std::vector<std::vector<std::size_t>> rows;
-  while (left > 0) {
-    std::vector<std::size_t> row(factors, 0), best;
+  while (!left.empty()) {
     std::size_t most = 0;
-    for (bool more = true; more;) {
+    const std::vector<std::size_t>* best = nullptr;
+    for (const auto& candidate : candidates) {
       std::size_t fresh = 0;
-      for_pairs(row, [&](const std::vector<bool>& seen, std::size_t b) { fresh += seen[b] ? 0 : 1; });
-      if (fresh > most || best.empty()) {
-        most = fresh;
-        best = row;
-      }
-      more = false;
-      for (std::size_t f = factors; f-- > 0 && !more;) {
-        row[f] = row[f] + 1 < levels[f] ? row[f] + 1 : 0;
-        more = row[f] != 0;
-      }
+      for_pairs(candidate, [&](const auto& pair) { fresh += left.count(pair); });
+      if (fresh <= most) continue;
+      most = fresh;
+      best = &candidate;
     }
-    for_pairs(best, [&](std::vector<bool>& seen, std::size_t b) {
-      left -= seen[b] ? 0 : 1;
-      seen[b] = true;
-    });
-    rows.push_back(best);
+    for_pairs(*best, [&](const auto& pair) { left.erase(pair); });
+    rows.push_back(*best);
   }
   return rows;
 }
 
 const std::vector<Choice>& pairwise_choices() {
   static const std::vector<Choice> choices = [] {
+    const auto allowed = [](const std::vector<std::size_t>& row) {
+      return friction_laws[row[0]].value != FrictionLaw::spring || precisions[row[1]].value != Precision::mixed;
+    };
     std::vector<Choice> all;
-    for (const std::vector<std::size_t>& row : pairwise_rows(
-             {friction_laws.size(), policies.size(), steps_per_contact.size(), integrators.size(), seeds.size()}))
-      all.push_back({friction_laws[row[0]].value, policies[row[1]].value, steps_per_contact[row[2]],
-                     integrators[row[3]].value, seeds[row[4]]});
+    for (const std::vector<std::size_t>& row :
+         pairwise_rows({friction_laws.size(), precisions.size(), policies.size(), steps_per_contact.size(),
+                        integrators.size(), seeds.size()},
+                       allowed))
+      all.push_back({friction_laws[row[0]].value, precisions[row[1]].value, policies[row[2]].value,
+                     steps_per_contact[row[3]], integrators[row[4]].value, seeds[row[5]]});
     return all;
   }();
   return choices;
@@ -103,6 +110,7 @@ void apply(const Choice& choice, Scene& scene) {
   }
   scene.verlet.policy = choice.policy;
   scene.time.steps_per_contact = choice.steps_per_contact;
+  scene.time.precision = choice.precision;
   scene.time.integrator = choice.integrator;
   scene.seed = choice.seed;
 }

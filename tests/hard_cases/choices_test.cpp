@@ -21,6 +21,13 @@ TEST_CASE("hard cases: every pair of settings stands in a row, and rows are few"
     for (std::size_t b = a + 1; b < levels.size(); ++b) all += levels[a] * levels[b];
   CHECK(pairs.size() == all);
   CHECK(rows.size() <= 24);
+  // Rows that are not allowed are in no table, and take no other pair with them.
+  std::size_t held = 0;
+  for (const auto& row : pairwise_rows({2, 3, 3}, [](const auto& r) { return r[0] != 1 || r[1] != 2; })) {
+    CHECK((row[0] != 1 || row[1] != 2));
+    held += row[0] == 1 && row[2] == 2 ? 1 : 0;
+  }
+  CHECK(held > 0);
 
   const Choice first = pairwise_choices().front();
   CHECK(first.friction == FrictionLaw::coulomb);

@@ -235,6 +235,20 @@ TEST_CASE("a given step - rounded to the duration or refused with the largest al
   CHECK_THROWS_AS(step_of(scene), SceneError);
 }
 
+TEST_CASE("strong damping shortens verlet's step, whose forces see velocities half a step ahead, and not leapfrog's") {
+  Scene scene = table_5();
+  for (ContactConstants* constants : {&scene.contact.granule, &*scene.contact.wall}) constants->restitution = 0.1;
+  const TimeStep leapfrog = step_of(scene);
+  CHECK(leapfrog.contact_duration / leapfrog.step == doctest::Approx(8.0).epsilon(1.0e-4));
+  scene.time.integrator = Integrator::verlet;
+  const TimeStep verlet = step_of(scene);
+  const double alpha = -std::sqrt(5.0) * std::log(0.1) / std::hypot(std::log(0.1), pi);
+  CHECK(verlet.contact_duration / verlet.step == doctest::Approx(14.0 * alpha).epsilon(1.0e-4));
+  CHECK(verlet.reason.find("verlet") != std::string::npos);
+  for (ContactConstants* constants : {&scene.contact.granule, &*scene.contact.wall}) constants->restitution = 0.9;
+  CHECK(step_of(scene).step == doctest::Approx(leapfrog.step).epsilon(1.0e-4));
+}
+
 TEST_CASE("without granules the sampling alone sets the step") {
   Scene scene = table_5();
   scene.populations.clear();
