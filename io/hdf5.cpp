@@ -202,7 +202,20 @@ std::size_t File::count_of(const Handle& dataset, const std::string& name) const
   const Handle space = owned(H5Dget_space(dataset.id()), H5Sclose, "read " + name);
   const hssize_t count = H5Sget_simple_extent_npoints(space.id());
   if (count < 0) fail("read " + name);
-  return static_cast<std::size_t>(count);
+  // All that this program writes is there, value by value: a claim of more must not cost memory.
+  const Handle type = owned(H5Dget_type(dataset.id()), H5Tclose, "read " + name);
+  const auto points = static_cast<std::size_t>(count);
+  if (points > 0 && points > H5Dget_storage_size(dataset.id()) / std::max<std::size_t>(1, H5Tget_size(type.id())))
+    throw FileError(path_.string() + ": " + name + " claims more values than the file holds");
+  return points;
+}
+
+void File::demand_one(const Handle& type, const Handle& space, H5T_class_t wanted, const std::string& name) const {
+  const H5T_class_t is = H5Tget_class(type.id());
+  const bool number = wanted == H5T_FLOAT && (is == H5T_FLOAT || is == H5T_INTEGER);
+  const bool text = wanted == H5T_STRING && is == H5T_STRING && H5Tis_variable_str(type.id()) == 0;
+  if ((!number && !text) || H5Sget_simple_extent_npoints(space.id()) != 1)
+    throw FileError(path_.string() + ": " + name + " is not one " + (wanted == H5T_STRING ? "text" : "number"));
 }
 
 std::vector<double> File::read_doubles(const std::string& name) const {
@@ -227,6 +240,8 @@ std::string File::read_text(const std::string& name) const {
   const Silence silence;
   const Handle dataset = owned(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "read " + name);
   const Handle type = owned(H5Dget_type(dataset.id()), H5Tclose, "read " + name);
+  const Handle space = owned(H5Dget_space(dataset.id()), H5Sclose, "read " + name);
+  demand_one(type, space, H5T_STRING, name);
   std::string text(H5Tget_size(type.id()), '\0');
   require(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "read " + name);
   text.resize(std::min(text.size(), text.find('\0')));
@@ -261,6 +276,9 @@ double File::double_attribute(const std::string& object, const std::string& name
   const std::string what = "read the attribute " + name + " of " + object;
   const Handle attribute =
       owned(H5Aopen_by_name(file_.id(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, what);
+  const Handle type = owned(H5Aget_type(attribute.id()), H5Tclose, what);
+  const Handle space = owned(H5Aget_space(attribute.id()), H5Sclose, what);
+  demand_one(type, space, H5T_FLOAT, "the attribute " + name);
   double value = 0.0;
   require(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &value), what);
   return value;
@@ -272,6 +290,8 @@ std::string File::text_attribute(const std::string& object, const std::string& n
   const Handle attribute =
       owned(H5Aopen_by_name(file_.id(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, what);
   const Handle type = owned(H5Aget_type(attribute.id()), H5Tclose, what);
+  const Handle space = owned(H5Aget_space(attribute.id()), H5Sclose, what);
+  demand_one(type, space, H5T_STRING, "the attribute " + name);
   std::string text(H5Tget_size(type.id()), '\0');
   require(H5Aread(attribute.id(), type.id(), text.data()), what);
   text.resize(std::min(text.size(), text.find('\0')));

@@ -117,6 +117,8 @@ private:
   void require(herr_t status, const std::string& what) const;
   void write_values(const std::string& name, hid_t type, const void* data, const std::vector<hsize_t>& shape);
   std::size_t count_of(const Handle& dataset, const std::string& name) const;
+  /// Reading into one value needs one: files that were damaged and sealed again hold anything.
+  void demand_one(const Handle& type, const Handle& space, H5T_class_t wanted, const std::string& name) const;
   void put_attribute(const std::string& object, const std::string& name, hid_t type, const void* value);
 
   std::filesystem::path path_;
