@@ -57,7 +57,9 @@ void tell_plan(const StudySettings& settings, const StudyOptions& options, const
                std::size_t granules) {
   if (!options.tell) return;
   double seconds = 0.0;
-  for (const StudySetting& setting : settings.settings) seconds += options.seeds * setting.seconds;
+  for (const StudySetting& setting : settings.settings)
+    seconds += options.seeds * setting.seconds +
+               (setting.audited ? std::min(study_audit_seconds, 20.0 * setting.seconds) : 0.0);
   seconds /= threads.cases == 1 ? 1.0 + 0.8 * (threads.each - 1) : threads.cases;
   options.tell(
       fmt::format("{} settings, {} seed{}: {} runs of {} granules, {} at a time, about {} in all (within a factor "

@@ -29,7 +29,6 @@ namespace fs = std::filesystem;
 /// A step of fewer granules is not worth sharing (solver/simulation.cpp): such cases run side by side instead.
 constexpr std::size_t worth_sharing = 20000;
 constexpr std::int64_t audit_interval = 4; ///< steps; no contact is so short
-constexpr double audit_seconds = 5.0;      ///< about, per audited run
 
 double processor_seconds() {
   timespec now{};
@@ -61,6 +60,8 @@ std::map<std::string, double> observables_of(const Simulation& simulation, const
   values["friction_wall"] = ledger.friction_wall;
   values["dissipated"] = ledger.normal_granule + ledger.normal_wall + ledger.friction_granule + ledger.friction_wall;
   values["contacts_per_granule"] = simulation.verlet().contacts_per_granule;
+  // A window shorter than a period has no amplitude.
+  std::erase_if(values, [](const auto& value) { return !std::isfinite(value.second); });
   return values;
 }
 
@@ -167,7 +168,7 @@ private:
   void add_audit(const StudySetting& setting, std::vector<std::string>& overrides) const {
     const auto granules = static_cast<double>(starts_.granules());
     const double seconds = 0.5e-9 * granules * granules + 3e-7 * granules;
-    const double steps = static_cast<double>(audit_interval) * std::max(8.0, audit_seconds / seconds);
+    const double steps = static_cast<double>(audit_interval) * std::max(8.0, study_audit_seconds / seconds);
     const double duration = std::min(document_.scene.time.duration, steps * setting.time_step);
     overrides.push_back(fmt::format("verlet.audit={}", audit_interval));
     overrides.push_back(fmt::format("time.duration={}", duration));
@@ -233,7 +234,7 @@ public:
   }
 
 private:
-  static double seconds_of(const Task& task) { return task.audit ? audit_seconds : task.setting->seconds; }
+  static double seconds_of(const Task& task) { return task.audit ? study_audit_seconds : task.setting->seconds; }
 
   void work() {
     for (;;) {

@@ -43,6 +43,8 @@ struct StudyCases {
 StudyCases run_cases(const SceneDocument& document, const std::string& name, const StudySettings& settings,
                      const std::filesystem::path& folder, const StudyOptions& options);
 
+inline constexpr double study_audit_seconds = 5.0; ///< at most, about, of a run that counts missed contacts
+
 /// How many threads run cases side by side, and how many each case has.
 struct StudyThreads {
   int cases = 1;

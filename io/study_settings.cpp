@@ -30,12 +30,7 @@ public:
              .group = "integrator",
              .label = fmt::format("T_c/{:g}, velocity Verlet", steps),
              .overrides = with_steps(steps, {"time.integrator=verlet"})});
-    if (wanted("precision"))
-      for (const double steps : {4, 8, 16})
-        add({.name = fmt::format("mixed-{:g}", steps),
-             .group = "precision",
-             .label = fmt::format("T_c/{:g}, mixed precision", steps),
-             .overrides = with_steps(steps, {"time.precision=mixed"})});
+    if (wanted("precision")) add_mixed();
     if (wanted("policy")) add_policies();
     if (wanted("skin"))
       for (const double skin : {0.05, 0.1, 0.2, 0.4})
@@ -85,6 +80,19 @@ private:
     if (own) return;
     // Whatever the scene's precision is, its own settings are not overridden.
     add({.name = "own", .group = "steps", .label = "the scene's own", .own = true, .audited = wanted("policy")});
+  }
+
+  void add_mixed() {
+    try {
+      scene_under(document_, name_, {"time.precision=mixed"});
+    } catch (const SceneError&) {
+      return made_.left_out.emplace_back("mixed precision: this program has none"), void();
+    }
+    for (const double steps : {4, 8, 16})
+      add({.name = fmt::format("mixed-{:g}", steps),
+           .group = "precision",
+           .label = fmt::format("T_c/{:g}, mixed precision", steps),
+           .overrides = with_steps(steps, {"time.precision=mixed"})});
   }
 
   void add_policies() {
@@ -157,7 +165,6 @@ private:
   /// Keeps the setting if the program can run the scene under it.
   void add(StudySetting setting) {
     try {
-      // An explicit double is what there is where nothing else can be chosen.
       const Plan plan = make_plan(scene_under(document_, name_, setting.overrides).scene);
       setting.time_step = plan.time_step;
       setting.steps_per_contact = plan.contact_duration / plan.time_step;
@@ -169,7 +176,8 @@ private:
     } catch (const SceneError& error) {
       if (setting.reference || setting.own) throw;
       const Problem& first = error.problems().front();
-      made_.left_out.push_back(fmt::format("{}: {}: {}", setting.label, first.key, first.message));
+      const std::string reason = first.message.substr(0, first.message.find(" (given by --set"));
+      made_.left_out.push_back(fmt::format("{}: {}: {}", setting.label, first.key, reason));
       return;
     }
     made_.settings.push_back(std::move(setting));

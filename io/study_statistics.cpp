@@ -104,6 +104,9 @@ bool within(const StudyRow& row, double error) {
   });
 }
 
+/// Times that differ by less are the same, and the smaller error of a contact decides.
+constexpr double as_fast = 1.1;
+
 bool eligible(const StudyRow& row) {
   return row.runs > 0 && row.stopped.empty() && !row.setting->other_truth && row.missed == 0;
 }
@@ -191,12 +194,19 @@ std::vector<const StudyRow*> frontier(const StudyTable& table) {
 
 StudyAdvice advise(const StudyTable& table, double error) {
   StudyAdvice advice;
+  std::vector<const StudyRow*> good;
   for (const StudyRow& row : table.rows) {
     if (!eligible(row)) continue;
-    const auto faster = [&](const StudyRow* than) { return than == nullptr || row.time < than->time; };
-    if (!row.differences.empty() && within(row, error) && faster(advice.by_observables)) advice.by_observables = &row;
-    if (row.setting->contact.error <= error && faster(advice.by_contact)) advice.by_contact = &row;
+    if (!row.differences.empty() && within(row, error)) good.push_back(&row);
+    if (row.setting->contact.error <= error && (advice.by_contact == nullptr || row.time < advice.by_contact->time))
+      advice.by_contact = &row;
   }
+  double fastest = std::numeric_limits<double>::infinity();
+  for (const StudyRow* row : good) fastest = std::min(fastest, row->time);
+  for (const StudyRow* row : good)
+    if (row->time <= as_fast * fastest && (advice.by_observables == nullptr ||
+                                           row->setting->contact.error < advice.by_observables->setting->contact.error))
+      advice.by_observables = row;
   if (advice.by_observables != nullptr && advice.by_observables->scatter() > error) {
     const double ratio = advice.by_observables->scatter() / error;
     advice.seeds_needed = static_cast<int>(std::ceil(std::min(1e6, ratio * ratio * table.seeds)));
