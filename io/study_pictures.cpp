@@ -52,9 +52,9 @@ Plot error_against_time(const StudyReport& report) {
 
 Plot response_against_time(const StudyReport& report) {
   Plot plot;
-  plot.title = "Largest difference of amplitude, rms and dissipation from the reference; hollow: not told from chance";
+  plot.title = "Difference from the reference against time (hollow: not told from chance)";
   plot.x = {fmt::format("{} of a run, s", report.threads.each == 1 ? "processor time" : "wall time"), true};
-  plot.y = {"difference, %", true};
+  plot.y = {"largest of rms, amplitude and dissipation, %", true};
   for (const auto& [group, colour] : colours) {
     PlotSeries told{.name = group, .colour = colour}, hidden{.colour = colour, .hollow = true};
     for (const StudyRow& row : report.table->rows) {

@@ -1,6 +1,7 @@
 #include "io/svg_plot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -168,8 +169,17 @@ private:
       const double x = x_.at(point.x), y = y_.at(point.y);
       if (point.high > point.low) line(x, y_.at(point.low), x, y_.at(point.high), series.colour.c_str(), 0.8);
       if (series.dots) mark(x, y, series);
-      if (!point.label.empty()) write(x + 6.0, y - 5.0, point.label, R"(font-size="9" fill="#444444")");
+      if (!point.label.empty()) label(x + 6.0, y - 5.0, point.label);
     }
+  }
+
+  /// Left out where it would lie on another one.
+  void label(double x, double y, const std::string& text) {
+    const double reach = 5.0 * static_cast<double>(text.size());
+    for (const auto& [left_end, right_end, height_there] : labels_)
+      if (x < right_end && left_end < x + reach && std::abs(y - height_there) < 9.0) return;
+    labels_.push_back({x, x + reach, y});
+    write(x, y, text, R"(font-size="9" fill="#444444")");
   }
 
   void bars(const PlotSeries& series) {
@@ -186,6 +196,7 @@ private:
   const Plot& plot_;
   Scale x_, y_;
   std::string out_;
+  std::vector<std::array<double, 3>> labels_; ///< from x, to x, y
 };
 
 } // namespace

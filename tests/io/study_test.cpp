@@ -18,7 +18,7 @@ std::map<std::string, fs::file_time_type> cases_in(const fs::path& folder) {
 }
 
 const std::string short_study =
-    "study accuracy small.toml --seeds 2 --vary steps,integrator --set time.duration=0.004 -o study";
+    "study accuracy small.toml --seeds 2 --vary steps,integrator --set time.duration=0.05 -o study";
 
 } // namespace
 

@@ -238,6 +238,7 @@ TEST_CASE("a run whose step was chosen by an error goes on by the same bits") {
 
 TEST_CASE("a bare structure has no contact whose error could be asked for") {
   Scene scene = bare_structure();
+  scene.time.duration = 1.0;
   const Plan without = make_plan(scene);
   scene.time.error = 0.01;
   const Plan with = make_plan(scene);
