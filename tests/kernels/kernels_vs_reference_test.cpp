@@ -87,11 +87,22 @@ void check_memory(const Springs& springs, std::size_t entry, const reference::Co
   CHECK(row.root == doctest::Approx(std::sqrt(reduced_radius * contact.overlap)).epsilon(1.0e-10));
 }
 
-void add_contact(Expected& expected, const reference::Contact& contact, std::size_t i, double radius_i) {
+/// Friction is a coefficient times the slip, which may be the small rest of large velocities: the size of those.
+double size_of_friction(const reference::Contact& contact, const reference::Granule& a, const reference::Granule& b) {
+  const auto length = [](const reference::Vector& v) { return std::hypot(v[0], v[1], v[2]); };
+  const double slip = length(contact.slip);
+  if (slip == 0.0) return 0.0;
+  return length(contact.friction) / slip *
+         (length(a.velocity) + length(b.velocity) + a.radius * length(a.spin) + b.radius * length(b.spin));
+}
+
+void add_contact(Expected& expected, const reference::Contact& contact, std::size_t i, double radius_i,
+                 double friction_size = 0.0) {
   expected.force[i].add(1.0, contact.force_i);
   expected.turn[i].add(1.0 / radius_i, contact.torque_i);
   expected.damping[i].add(-contact.damping, contact.normal);
   expected.rubbing[i].add(1.0, contact.friction);
+  for (auto* sums : {&expected.force, &expected.turn, &expected.rubbing}) (*sums)[i].size += friction_size;
   expected.elastic += contact.elastic_energy;
   expected.spring += contact.spring_energy;
 }
@@ -142,7 +153,10 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
               reference::pair_contact(a, b, law, step, springs.before[entry], otherwise ? &arrival : nullptr);
           contacts.push_back(contact);
           if (!contact.touching) continue;
-          add_contact(expected, contact, pair.first, a.radius);
+          const double friction_size = effects.precision == Precision::mixed ? size_of_friction(contact, a, b) : 0.0;
+          add_contact(expected, contact, pair.first, a.radius, friction_size);
+          for (auto* sums : {&expected.force, &expected.turn, &expected.rubbing})
+            (*sums)[pair.second].size += friction_size;
           expected.force[pair.second].add(-1.0, contact.force_i);
           expected.turn[pair.second].add(1.0 / b.radius, contact.torque_j);
           expected.damping[pair.second].add(contact.damping, contact.normal);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <string>
 
 using namespace grandamp;
 using namespace grandamp::test;
@@ -147,7 +148,7 @@ TEST_CASE("mixed precision: Table 5's damper has the figures of double within th
       return (squares[static_cast<std::size_t>(which)][k] / runs - mean(which) * mean(which)) / (runs - 1);
     };
     const double error = std::sqrt(variance(0) + variance(1));
-    MESSAGE(Figures::names[k], ": ", mean(0), " in double, ", mean(1), " mixed, standard error ", error);
+    MESSAGE(std::string(Figures::names[k]), ": ", mean(0), " in double, ", mean(1), " mixed, standard error ", error);
     CHECK(std::abs(mean(1) - mean(0)) < 4.0 * error);
     CHECK(error < 0.1 * mean(0)); // or the comparison says nothing
   }

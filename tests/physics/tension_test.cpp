@@ -94,8 +94,8 @@ TEST_CASE("two populations have the restitution of their own pair, and of their 
   Scene scene = two_granules(radius, speed, 1.0e-7);
   scene.populations.push_back(scene.populations[0]);
   Population &a = scene.populations[0], &b = scene.populations[1];
-  a.name = "a";
-  b.name = "b";
+  a.name.assign(1, 'a');
+  b.name.assign(1, 'b');
   for (auto member : {&Population::positions, &Population::velocities, &Population::spins}) {
     (a.*member).resize(1);
     (b.*member).erase((b.*member).begin());
@@ -109,7 +109,7 @@ TEST_CASE("two populations have the restitution of their own pair, and of their 
   CHECK(-after<SolverRun>(scene).velocity[0][0] / speed == doctest::Approx(0.4).epsilon(1.0e-3));
 
   Scene floor = hit(0.9, 0.0, 0.0, true, 1000.0);
-  floor.populations[0].name = "a";
+  floor.populations[0].name.assign(1, 'a');
   PairContact wall{{"a", "wall"}, *floor.contact.wall};
   wall.constants.restitution = 0.3;
   floor.contact.pairs.push_back(wall);
