@@ -100,8 +100,8 @@ Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa,
   contact_effects_.variety = !all_equal(contacts_.granule) || !all_equal(contacts_.wall) ? Variety::materials
                              : !same_sizes                                               ? Variety::sizes
                                                                                          : Variety::alike;
-  contact_effects_.precision = plan_.scene.time.precision == Precision::mixed ? kernels::Precision::mixed
-                                                                              : kernels::Precision::full;
+  contact_effects_.precision =
+      plan_.scene.time.precision == Precision::mixed ? kernels::Precision::mixed : kernels::Precision::full;
   same_sizes_ = same_sizes;
   pair_laws_ = law_rows(contacts_.granule, contact.damping);
   wall_laws_ = law_rows(contacts_.wall, contact.damping);

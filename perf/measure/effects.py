@@ -3,7 +3,7 @@
 import re
 import shutil
 
-from . import states
+from . import sizes, states
 from .common import Report, build, in_turn, instruction_sets, number, overrides, perf, quick, repeats, run, spread, step_timer
 from .common import median
 
@@ -29,6 +29,10 @@ VARIANTS = [
     ("contacts that only push", {"contact.tension": "false"}),
     ("velocity Verlet", {"time.integrator": "verlet"}),
 ]
+#: Of the contacts between granules and with the walls of S3, whose stiffness is given.
+SPRINGS = {"contact.friction": "spring", "contact.granule.tangential_stiffness": 8.0e6,
+           "contact.wall.tangential_stiffness": 1.0e7}
+SPRING_MEMORY = {True: 10000, False: 100000}
 PHASES = {"pairs": ("pair_kernel", "PairLoop"), "walls": ("wall_kernel", "WallLoop"),
           "motion": ("motion_kernel", "MotionLoop"), "audit": ("Audit", "_Rb_tree"),
           "list": ("candidate_kernel", "split_kernel", "VerletList", "CellGrid", "Granules", "list_walls", "classed",
@@ -164,9 +168,14 @@ kernels, by phase. Without friction there is nothing that turns a granule, so ro
         head += ["instructions", *PHASES, "other"]
     report.table(head, rows, "At rest, several radii: one effect exchanged for another")
     report.text("Bytes: what the process holds more after the steps than before the granules were placed; of so few "
-                "granules a good part is scratch of fixed size, so only the differences tell: the memory of contacts is "
-                "36 bytes a candidate.")
+                "granules a good part is scratch of fixed size, and the table below tells more.")
     code += more
+    bytes_of = {name: step_timer(sizes.memory_scene(SPRING_MEMORY[quick]), settings, steps=3, warm=20)
+                for name, settings in (("Coulomb friction", {}), ("tangential springs", SPRINGS))}
+    report.table(["friction", "granules", "bytes per granule", "candidates per granule", "contacts per granule"],
+                 [[name, f"{of['granules']:,}", number(of["bytes_per_granule"]), number(of["candidates_per_granule"]),
+                   number(of["contacts_per_granule"])] for name, of in bytes_of.items()],
+                 "Memory of the contacts' springs, a large bed (granules by count)")
     if code:
         report.table(["effects", "the pair kernel that ran (from callgrind)", "square roots", "divisions", "spin and turn", "instructions"],
                      code, "What stands in the pair kernel's code")
