@@ -51,17 +51,16 @@ enum class FrictionLaw { none, coulomb, spring };
 /// [contact.granule] and [contact.wall]: what holds between two granules, or a granule and the enclosure.
 /// Stiffness is either given for `reference_radius`, or comes from `young` and `poisson`.
 struct ContactConstants {
-  std::optional<double> stiffness;        ///< k_n of reference_radius, N/m^1.5
-  std::optional<double> reference_radius; ///< m
-  std::optional<double> restitution;      ///< (0, 1], Tsuji damping
-  std::optional<double> alpha;            ///< Tsuji's constant instead of restitution
-  std::optional<double> normal_damping;   ///< linear damping, N s/m
-  std::optional<double> friction;         ///< mu
-  std::optional<double>
-      tangential_stiffness; ///< k_t of reference_radius, N/m^1.5, spring friction; it goes with stiffness
-  std::optional<double> tangential_damping; ///< N s/m, spring friction; left out: none
-  std::optional<double> young;              ///< of the wall, Pa
-  std::optional<double> poisson;            ///< of the wall
+  std::optional<double> stiffness;            ///< k_n of reference_radius, N/m^1.5
+  std::optional<double> reference_radius;     ///< m
+  std::optional<double> restitution;          ///< (0, 1], Tsuji damping
+  std::optional<double> alpha;                ///< Tsuji's constant instead of restitution
+  std::optional<double> normal_damping;       ///< linear damping, N s/m
+  std::optional<double> friction;             ///< mu
+  std::optional<double> tangential_stiffness; ///< k_t of reference_radius, N/m^1.5, spring friction; with stiffness
+  std::optional<double> tangential_damping;   ///< N s/m, spring friction; left out: none
+  std::optional<double> young;                ///< of the wall, Pa
+  std::optional<double> poisson;              ///< of the wall
 };
 
 /// [[contact.pair]]: between two populations by name, or a population and "wall", instead of the above.
