@@ -62,6 +62,9 @@ struct PairArguments {
 /// Candidates tested before their contacts are worked off.
 inline constexpr std::size_t pair_chunk = 4096;
 
+/// Contacts that are worked off together.
+inline constexpr std::size_t contact_batch = 64;
+
 /// A wall: a plane n.x = offset with n pointing out of the enclosure, or the side of a cylinder.
 struct WallSurface {
   double normal[3] = {0.0, 0.0, 0.0}; ///< plane

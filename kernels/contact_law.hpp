@@ -110,10 +110,10 @@ GRANDAMP_INLINE void spring_friction(const ContactGeometry<S>& c, ContactMemory<
 
 /// `memory` only with effects that remember.
 template <class S, ContactEffects E>
-GRANDAMP_INLINE ContactForces<S> contact_forces(const ContactGeometry<S>& c, const LawVectors<S>& law,
-                                                typename S::Vector friction_cap, ContactMemory<S>* memory = nullptr) {
+GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVectors<S>& law,
+                                    typename S::Vector friction_cap, ContactForces<S>& out,
+                                    ContactMemory<S>* memory = nullptr) {
   using Vector = typename S::Vector;
-  ContactForces<S> out;
   const Vector root = hertz_root<S>(c.radius, c.overlap);
   const Vector spring = hertz_force<S>(law.stiffness, root, c.overlap);
   if constexpr (E.energies()) out.elastic = hertz_energy<S>(spring, c.overlap);
@@ -164,7 +164,6 @@ GRANDAMP_INLINE ContactForces<S> contact_forces(const ContactGeometry<S>& c, con
       out.tz = c.lever * S::fnma(c.nx, ry, c.ny * rx);
     }
   }
-  return out;
 }
 
 } // namespace grandamp::kernels

@@ -11,7 +11,8 @@ template <class S>
 GRANDAMP_INLINE typename S::Vector coulomb_coefficient(typename S::Vector mu, typename S::Vector normal_force,
                                                        typename S::Vector slip_squared, typename S::Vector cap) {
   const typename S::Vector tiny = S::broadcast(S::tiny); // keeps 0/0 out; its root is far below any speed
-  return S::min(mu * S::abs(normal_force) / S::sqrt(slip_squared + tiny), cap);
+  // The division need not wait for the normal force.
+  return S::min(mu * S::abs(normal_force) * (S::broadcast(1.0) / S::sqrt(slip_squared + tiny)), cap);
 }
 
 } // namespace grandamp::kernels

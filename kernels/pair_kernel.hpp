@@ -152,8 +152,7 @@ template <class S, ContactEffects E> struct PairLoop {
     }
   }
 
-  void contacts(const CandidatePair* pairs, unsigned lanes, ContactResult& result) {
-    ContactGeometry<S> c;
+  void geometry(const CandidatePair* pairs, unsigned lanes, ContactGeometry<S>& c) {
     Vector x, y, z, distance, radii;
     approach(pairs, x, y, z, distance, radii, c.overlap);
 
@@ -198,7 +197,10 @@ template <class S, ContactEffects E> struct PairLoop {
     c.ny = y * inverse;
     c.nz = z * inverse;
     c.friction_mass = c.mass;
+  }
 
+  void forces(const CandidatePair* pairs, unsigned lanes, const ContactGeometry<S>& c, ContactForces<S>& f,
+              ContactResult& result) {
     LawVectors<S> law;
     if constexpr (E.variety == Variety::materials)
       law = gathered_laws<S>(a.laws, [&](int lane) {
@@ -207,21 +209,19 @@ template <class S, ContactEffects E> struct PairLoop {
     else
       law = common_law<S>(a.law);
 
-    ContactForces<S> f;
     if constexpr (E.remembers()) {
       const std::uint32_t* slots = a.springs.slots + (pairs - a.touching);
       ContactMemory<S> memory = recall(pairs, slots);
-      f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), &memory);
+      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), f, &memory);
       remember<S>(a.springs, slots, lanes, memory.spring);
       if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
     } else
-      f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap));
+      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), f);
     max_closing = S::max(max_closing, f.closing);
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);
       result.contacts += lanes;
     }
-    add_rows(pairs, lanes, c, f);
   }
 
   ContactMemory<S> recall(const CandidatePair* pairs, const std::uint32_t* slots) const {
@@ -317,8 +317,24 @@ template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, Co
     for (std::size_t k = n; k % contact_padding != 0; ++k) a.touching[k] = a.touching[n - 1];
     if constexpr (E.remembers())
       for (std::size_t k = n; k % contact_padding != 0; ++k) a.springs.slots[k] = a.springs.slots[n - 1];
-    for (std::size_t k = 0; k < n; k += S::width)
-      loop.contacts(a.touching + k, static_cast<unsigned>(n - k < S::width ? n - k : S::width), result);
+    // In three loops: the way of one contact through its roots and divisions is so long, and has so many
+    // instructions, that a processor cannot look beyond it to the next.
+    ContactGeometry<S> geometry[contact_batch / S::width];
+    ContactForces<S> forces[contact_batch / S::width];
+    for (std::size_t first = 0; first < n; first += contact_batch) {
+      const std::size_t left_here = n - first < contact_batch ? n - first : contact_batch;
+      const auto each = [&](auto work) __attribute__((always_inline)) {
+        for (std::size_t k = 0; k < left_here; k += S::width)
+          work(a.touching + first + k, static_cast<unsigned>(left_here - k < S::width ? left_here - k : S::width),
+               k / S::width);
+      };
+      each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v)
+               __attribute__((always_inline)) { loop.geometry(pairs, lanes, geometry[v]); });
+      each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v)
+               __attribute__((always_inline)) { loop.forces(pairs, lanes, geometry[v], forces[v], result); });
+      each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v)
+               __attribute__((always_inline)) { loop.add_rows(pairs, lanes, geometry[v], forces[v]); });
+    }
   }
   result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
   result.max_closing = largest<S>(loop.max_closing, result.max_closing);

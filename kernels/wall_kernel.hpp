@@ -90,11 +90,11 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     if constexpr (E.remembers()) {
       const std::uint32_t* slots = a.springs.slots + (list - a.touching);
       ContactMemory<S> memory = recall(list, slots);
-      f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), &memory);
+      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), f, &memory);
       remember<S>(a.springs, slots, lanes, memory.spring);
       if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
     } else
-      f = contact_forces<S, E>(c, law, S::broadcast(a.friction_cap));
+      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), f);
     max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
     max_closing = S::max(max_closing, f.closing);
     if constexpr (E.energies()) {
