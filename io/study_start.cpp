@@ -40,7 +40,8 @@ const StudyStarts::Positions& StudyStarts::packed(int seed) {
   scene.seed += static_cast<std::uint64_t>(seed);
   const Plan plan = make_plan(scene);
   Placement placement = place_granules(plan);
-  if (placement.to_be_poured) pour(plan, placement, set_of(isa_), threads_, [this](double, double) { look_(); });
+  if (placement.to_be_poured)
+    pour(plan, placement, set_of(isa_), threads_, [this](const PouringProgress&) { look_(); });
   Positions positions(scene.populations.size());
   for (std::size_t i = 0; i < placement.position.size(); ++i)
     positions[static_cast<std::size_t>(placement.population[i])].push_back(placement.position[i]);

@@ -269,7 +269,8 @@ void CaseReport::add(const Choice& choice, const Figures& f, const Bounds& bound
   CHECK(f.residual <= bounds.residual);
   if (bounds.residual < 0.1) CHECK_FALSE(f.warned_balance); // no false alarm
   CHECK(f.momentum <= bounds.momentum);
-  CHECK(f.angular <= bounds.angular);
+  // Turns of both granules come from one arm and one force, in mixed precision rounded to float.
+  CHECK(f.angular <= (choice.precision == Precision::mixed ? 1.0e-6 : bounds.angular));
   if (f.granules > 0) CHECK(f.audited > 0);
   CHECK(f.missed == 0);
 }
