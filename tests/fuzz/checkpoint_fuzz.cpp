@@ -50,7 +50,7 @@ restitution = 0.89
 friction = 0.52
 [time]
 duration = 0.01
-step = 1.0e-5
+step = 1.0e-6
 impact_speed = 1.0
 [verlet]
 policy = "displacement"
@@ -120,9 +120,9 @@ struct Bench {
     check_state(again.state, plan);
     visit_fields(again.state,
                  [this](const FieldInfo& info, const auto&) { names.push_back(std::string("/state/") + info.name); });
-    for (const char* name : {"/scene", "/overrides", "/recording/rows", "/recording/wall_time", "/recording/pouring",
-                             "/recording/latest/time", "/recording/initial/contacts", "/state", "/recording"})
-      names.emplace_back(name);
+    for (const char* object : {"/scene", "/overrides", "/recording/rows", "/recording/wall_time", "/recording/pouring",
+                               "/recording/latest/time", "/recording/initial/contacts", "/state", "/recording"})
+      names.emplace_back(object);
   }
   ~Bench() {
     std::error_code ignored;
@@ -220,7 +220,7 @@ void edit(hid_t file, const Bench& bench, FuzzedDataProvider& data) {
   if (old && how < 8) { // other values of the same kind
     const hdf5::Handle type(H5Dget_type(old.id()), H5Tclose), space(H5Dget_space(old.id()), H5Sclose);
     const hssize_t points = H5Sget_simple_extent_npoints(space.id());
-    if (points > 0)
+    if (points > 0 && points < 10000 && H5Tis_variable_str(type.id()) == 0)
       H5Dwrite(old.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
                any_values(data, static_cast<std::size_t>(points) * H5Tget_size(type.id())).data());
     return;
@@ -254,7 +254,8 @@ void read(const Bench& bench) {
     for (const Segment& segment : list.segments())
       for (const PairList* pairs : {&segment.inner, &segment.boundary})
         for (std::size_t k = 0; k < pairs->count(); ++k)
-          demand(pairs->data()[k].first <= 2 && pairs->data()[k].second <= 2, "pairs are of granules");
+          demand(pairs->data()[k].first <= 3 && pairs->data()[k].second <= 3,
+                 "pairs are of granules or their two ghosts");
   } catch (const StateError& error) {
     demand_message(error.what());
   }
