@@ -55,7 +55,8 @@ public:
         const int status = process.wait();
         INFO(content_of(folder_ / "messages"));
         if (status == 0) break;
-        REQUIRE(status == (cuts.signal == SIGKILL ? 128 + SIGKILL : 130));
+        // A signal that comes before the program listens ends it, and takes nothing with it.
+        REQUIRE((status == 128 + cuts.signal || (status == 130 && cuts.signal != SIGKILL)));
         for (const char* name : {"checkpoint.next.h5.new", "checkpoint.next.h5", "results.h5.new"})
           writing += std::filesystem::exists(run / name) ? 1 : 0;
       }

@@ -60,7 +60,8 @@ TEST_CASE("SIGUSR1 writes a checkpoint and the run goes on, SIGTERM and SIGHUP e
   CHECK(then > before);
   CHECK(std::filesystem::exists(folder / "run/checkpoint.previous.h5"));
   Process process({"resume", (folder / "run").string(), "--threads", "1"}, folder / "messages");
-  wait_for(1.0);
+  for (int k = 0; k < 3000 && std::filesystem::exists(folder / "run/summary.json"); ++k) wait_for(0.01);
+  wait_for(0.3);
   process.send(SIGHUP); // its terminal went away
   CHECK(process.ends_within(20.0));
   CHECK(process.wait() == 130);
@@ -140,6 +141,8 @@ assert run.wait() == 130, run.returncode
 assert os.path.exists("terminal/summary.json")
 seconds = float(sys.argv[2])
 run = started("log", subprocess.PIPE)
+while not os.path.exists("log/results.h5") and run.poll() is None:
+    time.sleep(0.01)
 time.sleep(seconds)
 run.send_signal(signal.SIGTERM)
 log = run.communicate()[1].decode()
@@ -148,7 +151,9 @@ assert "\r" not in log and len(lines) == (1 if seconds > 60 else 0), log
 print(lines)
 run = started("broken", subprocess.PIPE)
 run.stderr.close() # whoever read the messages died
-time.sleep(0.5)
+while not os.path.exists("broken/results.h5") and run.poll() is None:
+    time.sleep(0.01)
+time.sleep(0.3)
 run.send_signal(signal.SIGTERM)
 assert run.wait() == 130, run.returncode
 )");
