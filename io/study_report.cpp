@@ -69,12 +69,18 @@ std::string StudyReport::paragraph() const {
   const StudyAdvice advice = advise(*table, error);
   if (table->reference == nullptr || advice.by_observables == nullptr) return "";
   const StudyRow& best = *advice.by_observables;
+  const auto seeds = [](int count) { return fmt::format("{} seed{}", count, count == 1 ? "" : "s"); };
   std::string text = fmt::format("For an error of {}: {}", percent(error), best.setting->label);
   if (best.setting->own) text += " (the scene's own settings)";
+  if (advice.seeds_needed > 0)
+    text += fmt::format(
+        ", as far as {} of this length can tell: they tell nothing below {} from chance, and about {} would "
+        "be needed",
+        seeds(table->seeds), percent(best.scatter()), seeds(advice.seeds_needed));
   if (table->own != nullptr && !best.setting->own && table->own->time > 0.0)
-    text += fmt::format(", {:.2f} times the time of the scene's own settings", best.time / table->own->time);
-  text += fmt::format(". Held against {} in double, guarded, over {} seed{}:", table->reference->setting->label,
-                      table->seeds, table->seeds == 1 ? "" : "s");
+    text += fmt::format("; {:.2f} times the time of the scene's own settings", best.time / table->own->time);
+  text += fmt::format(". Held against {} in double, guarded, over {}:", table->reference->setting->label,
+                      seeds(table->seeds));
   bool first = true;
   for (const StudyDifference& difference : best.differences) {
     if (!is_main(difference.observable)) continue;
@@ -90,9 +96,6 @@ std::string StudyReport::paragraph() const {
   text += '.';
   if (std::isnan(best.scatter()))
     text += " With one seed the scatter is not known: no difference can be told from chance; use --seeds 3 or more.";
-  else if (advice.seeds_needed > 0)
-    text += fmt::format(" Such an error cannot be told from chance with {} seed{} of this length; about {} would do.",
-                        table->seeds, table->seeds == 1 ? "" : "s", advice.seeds_needed);
   if (done < planned) text += fmt::format(" Of {} runs {} are done.", planned, done);
   return text;
 }
