@@ -65,6 +65,7 @@ StepChoice choose_steps(const Scene& scene, const std::vector<ContactKind>& kind
   std::vector<Integrator> integrators{scene.time.integrator};
   if (scene.time.integrator_free) integrators = {Integrator::leapfrog, Integrator::verlet};
   std::vector<Errors> errors;
+  errors.reserve(integrators.size());
   for (const Integrator integrator : integrators) errors.emplace_back(calibration, integrator, step_at);
 
   StepChoice choice;
