@@ -39,7 +39,9 @@ TEST_CASE("hard cases: a spun granule held by 3, 4, 6 and 12 others gains no ene
         report.add(choice, figures, bounds,
                    fmt::format("{} holders: energy rises by {:.1e}, {:.1e} of it left", count, rise / turning,
                                left / turning));
-        CHECK(rise / turning <= (choice.friction == FrictionLaw::spring ? allowed_rise(choice) : 1.0e-9));
+        // In mixed precision the energy that presses is told to float's rounding.
+        const double rounding = choice.precision == Precision::mixed ? 1.0e-6 : 1.0e-9;
+        CHECK(rise / turning <= (choice.friction == FrictionLaw::spring ? allowed_rise(choice) : rounding));
       }
 }
 

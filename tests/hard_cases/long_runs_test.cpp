@@ -28,7 +28,7 @@ double drift(const Choice& choice, double duration, Figures* figures = nullptr) 
   WatchOptions options;
   options.looks = 50;
   options.audit_every = options.audit_every_if_missing = 5000;
-  options.sample_every = full_tests() ? 50 : 1;
+  options.sample_every = full_tests() ? 50 : 10;
   options.on_look = [&](const GranuleTable&, const Sample& now) {
     last = now.stored.kinetic + now.stored.elastic;
     if (first < 0.0) first = last;
