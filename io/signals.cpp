@@ -23,19 +23,19 @@ void on_signal(int signal) {
 SignalWatch::SignalWatch() {
   stop = 0;
   checkpoint = 0;
-  for (std::size_t k = 0; k < watched_.size(); ++k) {
-    sigaction(watched_[k], nullptr, &old_[k]);
-    if (watched_[k] == SIGHUP && old_[k].sa_handler == SIG_IGN) continue;
+  for (std::size_t k = 0; k < watched.size(); ++k) {
+    sigaction(watched[k], nullptr, &old_[k]);
+    if (watched[k] == SIGHUP && old_[k].sa_handler == SIG_IGN) continue;
     struct sigaction action {};
-    action.sa_handler = watched_[k] == SIGPIPE ? SIG_IGN : on_signal;
+    action.sa_handler = watched[k] == SIGPIPE ? SIG_IGN : on_signal;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
-    sigaction(watched_[k], &action, nullptr);
+    sigaction(watched[k], &action, nullptr);
   }
 }
 
 SignalWatch::~SignalWatch() {
-  for (std::size_t k = 0; k < watched_.size(); ++k) sigaction(watched_[k], &old_[k], nullptr);
+  for (std::size_t k = 0; k < watched.size(); ++k) sigaction(watched[k], &old_[k], nullptr);
 }
 
 bool SignalWatch::stop_requested() noexcept {

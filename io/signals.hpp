@@ -22,8 +22,8 @@ public:
   static bool take_checkpoint_request() noexcept;
 
 private:
-  static constexpr std::array watched_{SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGPIPE};
-  std::array<struct sigaction, watched_.size()> old_{};
+  static constexpr std::array watched{SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGPIPE};
+  std::array<struct sigaction, watched.size()> old_{};
 };
 
 } // namespace grandamp
