@@ -273,14 +273,23 @@ ReferenceRun::Forces ReferenceRun::forces(const std::vector<Granule>& moving, co
       all.touches.push_back({i, i, number, contact});
     }
   }
+  // Every pair is tried; the distances alone first, in plain arrays, which costs a tenth.
+  std::vector<double> x(count), y(count), z(count), r(count), apart(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    x[i] = moving[i].position[0];
+    y[i] = moving[i].position[1];
+    z[i] = moving[i].position[2];
+    r[i] = moving[i].radius;
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const Granule& a = moving[i];
     for (std::size_t j = i + 1; j < count; ++j) {
+      const double dx = x[j] - x[i], dy = y[j] - y[i], dz = z[j] - z[i], reach = r[i] + r[j];
+      apart[j] = dx * dx + dy * dy + dz * dz - 1.000001 * reach * reach;
+    }
+    for (std::size_t j = i + 1; j < count; ++j) {
+      if (apart[j] >= 0.0) continue;
       const Granule& b = moving[j];
-      const double reach = a.radius + b.radius;
-      if (std::abs(b.position[0] - a.position[0]) >= reach || std::abs(b.position[1] - a.position[1]) >= reach ||
-          std::abs(b.position[2] - a.position[2]) >= reach)
-        continue;
       const reference::Arrival arrival = arrival_of(arrived[i], arrived[j]);
       const reference::Contact contact =
           reference::pair_contact(a, b, pair_law(i, j), step_, spring_of(i, j), &arrival);
