@@ -6,13 +6,15 @@ build_packages=(g++ cmake ninja-build libcli11-dev libeigen3-dev libfmt-dev libh
 
 demo_packages=("${build_packages[@]}" python3 python3-matplotlib python3-numpy)
 
-# clang-14: libFuzzer and clang-tidy; qemu-user: the program on a processor without AVX; h5py, matplotlib: other readers
-# of our files.
+# clang-14: libFuzzer and clang-tidy; qemu-user: the program on a processor without AVX; h5py and matplotlib: another reader of
+# our files, and the paper's figures.
 test_packages=("${build_packages[@]}" binutils clang-14 clang-format-14 clang-tidy-14 doctest-dev git libbenchmark-dev
   hdf5-tools libclang-rt-14-dev python3 python3-h5py python3-matplotlib python3-numpy qemu-user)
 
-# Large, and only to see what ParaView makes of snapshots; without it that one test is skipped.
-full_test_packages=("${test_packages[@]}" paraview python3-paraview)
+paper_packages=("${build_packages[@]}" doctest-dev python3 python3-h5py python3-matplotlib python3-numpy)
+
+# Large: what ParaView makes of snapshots, and LIGGGHTS beside us; without them those tests are skipped.
+full_test_packages=("${test_packages[@]}" liggghts paraview python3-paraview)
 
 # The interpreter that the python3-* packages are for; another may come first in PATH.
 python=/usr/bin/python3

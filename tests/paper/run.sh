@@ -8,7 +8,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source io/packages.sh
-install_packages "${build_packages[@]}" doctest-dev python3 python3-h5py python3-matplotlib python3-numpy
+install_packages "${paper_packages[@]}"
 cmake --preset release -DGRANDAMP_TESTS=ON >/dev/null
 cmake --build --preset release --target grandamp_program reference_program -j "$(nproc)" >&2
 cd tests/paper

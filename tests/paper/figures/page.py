@@ -1,6 +1,5 @@
 """RESULTS.md: a section by figure, with a picture, tables and bounds, and a table of all sections before them."""
 
-import math
 import os
 import pathlib
 import re
@@ -8,7 +7,7 @@ import re
 import matplotlib
 
 matplotlib.use("svg")
-matplotlib.rcParams.update({"svg.hashsalt": "grandamp", "font.size": 9, "axes.grid": True, "grid.linewidth": 0.3,
+matplotlib.rcParams.update({"svg.hashsalt": "grandamp", "svg.fonttype": "none", "font.size": 9, "axes.grid": True, "grid.linewidth": 0.3,
                             "legend.fontsize": 8, "legend.framealpha": 0.9})
 import matplotlib.pyplot as pyplot  # noqa: E402
 
@@ -61,20 +60,20 @@ class Section:
         """A bound of any kind."""
         self.bounds.append((what, value, allowed, bool(holds)))
 
-    def picture(self, draw, columns=1, rows=1, size=(6.4, 3.6), what=""):
-        """draw(axes) fills one plot, or a row-wise list of them."""
+    def picture(self, draw, columns=1, rows=1, size=(6.4, 3.6), dense=False):
+        """draw(axes) fills one plot, or a row-wise list of them. `dense`: too many points for SVG."""
         figure, axes = pyplot.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained")
         flat = list(axes.flat)
         draw(flat if len(flat) > 1 else flat[0])
         folder = output / "pictures"
         folder.mkdir(parents=True, exist_ok=True)
         self.pictures += 1
-        file = f"{self.name}{'' if self.pictures == 1 else f'_{self.pictures}'}.svg"
-        figure.savefig(folder / file, metadata={"Date": None})
+        file = f"{self.name}{'' if self.pictures == 1 else f'_{self.pictures}'}.{'png' if dense else 'svg'}"
+        figure.savefig(folder / file, **({"dpi": 100} if dense else {"metadata": {"Date": None}}))
         (work / "png").mkdir(parents=True, exist_ok=True)
-        figure.savefig(work / "png" / file.replace(".svg", ".png"), dpi=110)
+        figure.savefig(work / "png" / file.replace(".svg", ".png"), dpi=100)
         pyplot.close(figure)
-        self.lines += [f"![{what or self.title}](pictures/{file})", ""]
+        self.lines += [f"![{self.title}](pictures/{file})", ""]
 
     def missed(self):
         return [bound for bound in self.bounds if not bound[3]]
@@ -113,4 +112,4 @@ def write(sections, order):
 
 
 def percent(value, digits=1):
-    return "-" if math.isnan(value) else f"{100.0 * value:.{digits}f} %"
+    return f"{100.0 * value:.{digits}f} %"

@@ -54,8 +54,8 @@ def fig12(runs):
     cut_half = 1.0 - at_half[1] / (0.5 * top)
     resonant = 1.0 - mean[11.77].mean / (1e3 * bare(11.77, 1e-3))
     section.text(f"""Peak (parabola through the largest point and its neighbours, by packing): at **{place.text(2)} Hz**, below the bare structure's
-        {NATURAL:.2f} Hz, **{height.text(2)} mm rms** high against {top:.1f} mm: {cut:.1%} taken off; with a = 0.5 mm {at_half[1]:.2f} mm at {at_half[0]:.2f} Hz,
-        {cut_half:.1%}. Independent: 92 to 94 %. At 11.77 Hz itself {resonant:.1%} are taken off.""")
+        {NATURAL:.2f} Hz, **{height.text(2)} mm rms** high against {top:.1f} mm: {percent(cut)} taken off; with a = 0.5 mm {at_half[1]:.2f} mm at {at_half[0]:.2f} Hz,
+        {percent(cut_half)}. Independent: 92 to 94 %. At 11.77 Hz itself {percent(resonant)} are taken off.""")
 
     def draw(axes):
         fine = numpy.linspace(10.0, 14.0, 800)
@@ -74,5 +74,5 @@ def fig12(runs):
     section.bound("bare rms at 11.77 Hz, mm, closed form", 1e3 * alone.result().structure["rms_displacement"], 1e3 * bare(11.77, 1e-3), 0.005)
     section.check("peak below the bare structure's", place.mean + 3 * (place.error if place.number > 1 else 0.0) < NATURAL, place.text(2), f"below {NATURAL:.2f} Hz")
     section.check("taken off the peak", 0.91 <= cut <= 0.95, percent(cut), "92 to 94 %, the last digit rounded")
-    section.verdict = f"reproduced: peak at {place.mean:.2f} Hz, {cut:.1%} taken off (independent 92 to 94, paper nearly 90)"
+    section.verdict = f"reproduced: peak at {place.mean:.2f} Hz, {percent(cut)} taken off (independent 92 to 94, paper nearly 90)"
     yield section
