@@ -53,7 +53,10 @@ def fig14(runs):
 
     def draw(axes):
         for rule, what in RULES.items():
-            axes.plot(LIST_SKINS, [seen[rule, s]["mean_interval"] for s in LIST_SKINS], "o-", markersize=4, label=what)
+            whole = [s for s in LIST_SKINS if rule != "predicted" or s not in halted]
+            axes.plot(whole, [seen[rule, s]["mean_interval"] for s in whole], "o-", markersize=4, label=what)
+        for k, s in enumerate(halted):
+            axes.plot([s], [seen["predicted", s]["mean_interval"]], "x", color="C0", label="the paper's, stopped: contacts missed" if k == 0 else None)
         axes.set_xlabel("skin / diameter")
         axes.set_ylabel("mean steps between lists")
         axes.set_ylim(0)
