@@ -49,7 +49,7 @@ def fig11(runs):
             continue
         means = {law: Mean(100 * v) for law, v in values.items()}
         distances.append(apart(*means.values()))
-        table.append([f"{low:g} to {high:g}", means["spring"].text(2), means["coulomb"].text(2), f"{distances[-1]:.1f}"])
+        table.append([f"{low:g} to {high:g}", means["spring"].text(2), means["Coulomb"].text(2), f"{distances[-1]:.1f}"])
     section.table(["amplitude, mm", "spring, %", "Coulomb, %", "standard errors between"], table)
 
     with numpy.errstate(invalid="ignore"):
