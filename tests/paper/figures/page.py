@@ -69,7 +69,7 @@ class Section:
         folder.mkdir(parents=True, exist_ok=True)
         self.pictures += 1
         file = f"{self.name}{'' if self.pictures == 1 else f'_{self.pictures}'}.{'png' if dense else 'svg'}"
-        figure.savefig(folder / file, **({"dpi": 100} if dense else {"metadata": {"Date": None}}))
+        figure.savefig(folder / file, **({"dpi": 75} if dense else {"metadata": {"Date": None}}))
         (work / "png").mkdir(parents=True, exist_ok=True)
         figure.savefig(work / "png" / file.replace(".svg", ".png"), dpi=100)
         pyplot.close(figure)

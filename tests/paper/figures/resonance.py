@@ -72,7 +72,7 @@ def table5(runs):
         from {WINDOW[0]:g} s on it is {1e3 * alone[RESONANCE]:.2f} mm, when its start is forgotten {1e3 * steady(RESONANCE):.2f} mm.""")
     peak = max(FREQUENCIES, key=lambda f: amplitude[f].mean)
     level = [f for f in FREQUENCIES if f == peak or apart(amplitude[f], amplitude[peak]) <= 3.0]
-    section.text(f"""The peak with granules is broad: the largest mean is at {peak} Hz, and those at {", ".join(f"{f:g}" for f in level)} Hz cannot be told from it.""")
+    section.text(f"""The peak with granules is broad: the largest mean is at {peak} Hz, not to be told from {", ".join(f"{f:g}" for f in level if f != peak) or "none of the others"}.""")
 
     def draw(axes):
         fine = numpy.linspace(15.4, 16.6, 300)
@@ -113,7 +113,7 @@ def fig15(runs):
             # An envelope: the least and the greatest of each 5 ms.
             n = len(time) // 10 * 10
             t, lows, highs = time[:n:10], x[:n].reshape(-1, 10).min(1), x[:n].reshape(-1, 10).max(1)
-            axis.plot(numpy.repeat(t, 2), 1e3 * numpy.stack([lows, highs], 1).ravel(), linewidth=0.5)
+            axis.plot(numpy.repeat(t, 2), 1e3 * numpy.stack([lows, highs], 1).ravel(), linewidth=0.4)
             axis.set_title(f"{name}: amplitude {1e3 * run.structure['amplitude']:.2f} mm from {WINDOW[0]:g} s on", fontsize=9)
             axis.set_ylabel("displacement, mm")
         axes[1].set_xlabel("time, s")
