@@ -3,7 +3,6 @@
 #   tests/paper/run.sh              everything, some twenty minutes on two cores
 #   tests/paper/run.sh NAME...      fig2 fig6 fig7 fig8 fig11 fig12 fig14 table5 fig15 fig16 fig17 size490 work fig18 table6
 # Exit status 1 if a bound is missed, and which. Runs are kept in build/paper/runs and used again by the same program.
-# SHORT=1: everything small, into build/paper/short, to see that it works; bounds are not held then.
 # GRANDAMP_PAPER_RESULTS: another folder for RESULTS.md; JOBS: runs at a time.
 set -euo pipefail
 cd "$(dirname "$0")/../.."

@@ -2,7 +2,6 @@
 
 import numpy
 
-from . import settings
 from .page import Section
 from .settings import PAIRS, STEPS_PER_CONTACT
 

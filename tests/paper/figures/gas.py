@@ -2,7 +2,6 @@
 
 import numpy
 
-from . import settings
 from .page import Section, percent
 from .settings import GAS_MORE_SEEDS, GAS_SEEDS
 from .statistics import Mean, apart, apart_from

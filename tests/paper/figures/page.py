@@ -11,11 +11,10 @@ matplotlib.rcParams.update({"svg.hashsalt": "grandamp", "svg.fonttype": "none", 
                             "legend.fontsize": 8, "legend.framealpha": 0.9})
 import matplotlib.pyplot as pyplot  # noqa: E402
 
-from . import settings  # noqa: E402
 from .runs import work  # noqa: E402
 
 here = pathlib.Path(__file__).resolve().parents[1]
-output = pathlib.Path(os.environ.get("GRANDAMP_PAPER_RESULTS", work / "short" if settings.short else here))
+output = pathlib.Path(os.environ.get("GRANDAMP_PAPER_RESULTS", here))
 
 HEAD = """# The paper, figure by figure
 

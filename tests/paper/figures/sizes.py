@@ -202,7 +202,7 @@ def table6(runs):
     section.text(f"""**{"An order exists." if exists else "No order exists."}** An order would have each mixture more than three standard errors from the next:
         of the {len(steps)} steps of this one {told} {"is" if told == 1 else "are"} ({", ".join(f"{s:.1f}" for s in steps)} standard errors from the first place to the
         last). One run scatters by {percent(deviation / middle, 2)}, all mixtures taken together. Least and greatest are {percent(spread)} apart; without the last,
-        {order[-1]}, {percent(closer)}. {f"It differs ({distance:.0f} standard errors from the least): that mixture damps less, the others are alike." if steps[-1] > 3 else ""}""")
+        {order[-1]}, {percent(closer)}. {f"That one is different ({distance:.0f} standard errors from the least): the widest mixture damps less." if steps[-1] > 3 else ""}""")
 
     def draw(axes):
         for k, (n, m) in enumerate(means.items()):
