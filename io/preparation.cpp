@@ -112,4 +112,15 @@ RunResult record_from_the_start(Preparation& preparation, const std::string& tex
   return record_run(simulation, results, files, options, std::move(setup));
 }
 
+RunResult run_anew(const SceneDocument& document, RunFolder& files, const RunSceneOptions& options) {
+  RecorderSetup setup{.output = document.scene.output,
+                      .checkpoints = files.checkpoints(),
+                      .scene_text = document.text,
+                      .overrides = {},
+                      .begun = WallClock::now()};
+  Preparation preparation = prepare(document, options.isa, files, options, setup);
+  if (!preparation.simulation) return preparation.stopped;
+  return record_from_the_start(preparation, document.text, files, options, std::move(setup));
+}
+
 } // namespace grandamp

@@ -26,4 +26,7 @@ Preparation prepare(const SceneDocument& document, const std::string& isa, RunFo
 RunResult record_from_the_start(Preparation& preparation, const std::string& text, RunFolder& files,
                                 const RunSceneOptions& options, RecorderSetup setup);
 
+/// All of a run, from the placing of its granules on, into a folder that holds no run yet.
+RunResult run_anew(const SceneDocument& document, RunFolder& files, const RunSceneOptions& options);
+
 } // namespace grandamp

@@ -237,14 +237,7 @@ RunResult start_anew(RunFolder& files, const std::vector<std::string>& overrides
                     ": the run was stopped before its first checkpoint, and starts anew");
   files.forget_summary();
   if (!overrides.empty()) replace_file(files.scene(), document.text);
-  RecorderSetup setup{.output = document.scene.output,
-                      .checkpoints = files.checkpoints(),
-                      .scene_text = document.text,
-                      .overrides = {},
-                      .begun = WallClock::now()};
-  Preparation preparation = prepare(document, options.isa, files, options, setup);
-  if (!preparation.simulation) return preparation.stopped;
-  return record_from_the_start(preparation, document.text, files, options, std::move(setup));
+  return run_anew(document, files, options);
 }
 
 } // namespace

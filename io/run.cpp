@@ -31,14 +31,7 @@ RunResult run_scene(const SceneDocument& document, const std::filesystem::path& 
   const std::vector<Problem> notes = make_located_plan(document).notes; // a bad scene must not cost the folder anything
   if (options.notes && !notes.empty()) options.notes(notes);
   RunFolder files(folder, options.force);
-  RecorderSetup setup{.output = document.scene.output,
-                      .checkpoints = files.checkpoints(),
-                      .scene_text = document.text,
-                      .overrides = {},
-                      .begun = WallClock::now()};
-  Preparation preparation = prepare(document, options.isa, files, options, setup);
-  if (!preparation.simulation) return preparation.stopped;
-  return record_from_the_start(preparation, document.text, files, options, std::move(setup));
+  return run_anew(document, files, options);
 }
 
 } // namespace grandamp
