@@ -55,7 +55,7 @@ struct PairArguments {
   std::size_t populations = 1;
   double radius = 0.0;       ///< of every granule (Variety::alike), m
   double mass = 0.0;         ///< of every granule (Variety::alike), kg
-  double friction_cap = 0.0; ///< c (2/7, or 1 without rotation) / dt, 1/s
+  double friction_cap = 0.0; ///< (2/7, or 1 without rotation) / dt, 1/s; Verlet: half of it
   SpringArguments springs;   ///< rows of `pairs`
 };
 

@@ -38,6 +38,8 @@ struct ContactEffects {
   constexpr bool remembers() const {
     return friction == Friction::spring || friction == Friction::spring_without_rotation;
   }
+  /// Coulomb's friction is bounded by what the granules' other contacts leave to it.
+  constexpr bool counts() const { return rubs() && !remembers(); }
   constexpr bool damped() const { return damping != Damping::none; }
   constexpr bool only_pushes() const {
     return damping == Damping::tsuji_without_tension || damping == Damping::linear_without_tension;
@@ -58,12 +60,17 @@ constexpr bool has_mixed_kernel(ContactEffects e) {
 /// leapfrog: forces see the half-step velocity. verlet: forces see the velocity predicted to the full step.
 enum class Integration { leapfrog, verlet };
 
+/// What friction asks of the motion: nothing; to count contacts; and to turn the granules besides.
+enum class Rubbing { none, without_rotation, with_rotation };
+
 struct MotionEffects {
   Integration integration = Integration::leapfrog;
-  bool rotates = true;
+  Rubbing rubbing = Rubbing::with_rotation;
   bool accelerated = true; ///< gravity, or an enclosure that moves
   Observation observation = Observation::none;
 
+  constexpr bool rotates() const { return rubbing == Rubbing::with_rotation; }
+  constexpr bool counts() const { return rubbing != Rubbing::none; }
   constexpr bool ledger() const {
     return observation == Observation::ledger || observation == Observation::ledger_and_energies;
   }

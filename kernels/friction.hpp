@@ -6,13 +6,30 @@
 namespace grandamp::kernels {
 
 /// g in f_t = -g v_t: mu |F_n| / |v_t|, at most `cap` = c m_t / dt, so that one step cannot reverse the slip. At zero
-/// slip the quotient is huge and the cap holds.
+/// slip the quotient is huge and the cap holds. c is 1/(1 + n), n the contacts that the busier granule had a step ago
+/// (friction_share): stopping one slip alone takes m_t v_t^2 / 2, no more than its granules' kinetic energy, so all of
+/// a granule's contacts together make no energy as long as c <= 2/n, n the contacts that it has now.
 template <class S>
 GRANDAMP_INLINE typename S::Vector coulomb_coefficient(typename S::Vector mu, typename S::Vector normal_force,
                                                        typename S::Vector slip_squared, typename S::Vector cap) {
   const typename S::Vector tiny = S::broadcast(S::tiny); // keeps 0/0 out; its root is far below any speed
   // The division need not wait for the normal force.
   return S::min(mu * S::abs(normal_force) * (S::broadcast(1.0) / S::sqrt(slip_squared + tiny)), cap);
+}
+
+/// 1/(1 + touching).
+GRANDAMP_INLINE double friction_share(double touching) {
+  struct Table {
+    double values[32];
+  };
+  static constexpr Table table = [] {
+    Table t{};
+    for (int n = 0; n < 32; ++n) t.values[n] = 1.0 / (1.0 + n);
+    return t;
+  }();
+  const auto n = static_cast<unsigned>(touching);
+  return n < 32 ? table.values[n]
+                : 1.0 / (1.0 + touching); // a division takes longer than all else that moves a granule
 }
 
 } // namespace grandamp::kernels

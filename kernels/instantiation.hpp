@@ -13,7 +13,7 @@
 namespace grandamp::kernels {
 
 inline constexpr int contact_sets = 75; ///< damping x friction x variety
-inline constexpr int motion_sets = 8;   ///< integration x rotates x accelerated
+inline constexpr int motion_sets = 12;  ///< integration x rubbing x accelerated
 
 constexpr int contact_set(ContactEffects e) {
   return (static_cast<int>(e.damping) * 5 + static_cast<int>(e.friction)) * 3 + static_cast<int>(e.variety);
@@ -44,10 +44,10 @@ constexpr ContactEffects wall_effects(ContactEffects e) {
   return e;
 }
 constexpr int motion_set(MotionEffects e) {
-  return static_cast<int>(e.integration) * 4 + (e.rotates ? 2 : 0) + (e.accelerated ? 1 : 0);
+  return (static_cast<int>(e.integration) * 3 + static_cast<int>(e.rubbing)) * 2 + (e.accelerated ? 1 : 0);
 }
 constexpr MotionEffects motion_effects(int set, Observation observation) {
-  return {static_cast<Integration>(set / 4), (set & 2) != 0, (set & 1) != 0, observation};
+  return {static_cast<Integration>(set / 6), static_cast<Rubbing>(set / 2 % 3), (set & 1) != 0, observation};
 }
 
 /// The kernels of one instruction set and one Observation.

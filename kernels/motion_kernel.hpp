@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/arguments.hpp"
+#include "kernels/friction.hpp"
 
 namespace grandamp::kernels {
 
@@ -17,7 +18,8 @@ template <class S, MotionEffects E> struct MotionLoop {
   const Row kick = S::row_set(a.kick[0], a.kick[1], a.kick[2], 0.0);
   const Row frame = S::row_set(a.frame_velocity[0], a.frame_velocity[1], a.frame_velocity[2], 0.0);
   const Row drift = S::row_set(a.time_step, a.time_step, a.time_step, 0.0);
-  const double turn_step = 2.5 * a.time_step; ///< T/I = (5/2) turn / (m r), and s = r omega
+  /// T/I = (5/2) turn / (m r), and s = r omega.
+  const Row turn = S::row_set(2.5 * a.time_step, 2.5 * a.time_step, 2.5 * a.time_step, 0.0);
   Row kinetic = zero, spinning = zero, moment = zero;
   Row normal_granule = zero, normal_wall = zero;
   Row friction_granule = zero, friction_granule_turn = zero, friction_wall = zero, friction_wall_turn = zero;
@@ -28,17 +30,22 @@ template <class S, MotionEffects E> struct MotionLoop {
     ForceRow& force = a.granules.force[i];
     const double inverse_mass = motion.inverse_mass;
     const Row before = S::row_load(motion.velocity);
-    Row after = S::row_fma(S::row_load(force.force), S::row_broadcast(inverse_mass * a.time_step), before);
+    // The fourth component of the forces counts contacts, and must not get into the inverse mass.
+    const Row by = E.counts() ? S::row_broadcast(inverse_mass) * drift : S::row_broadcast(inverse_mass * a.time_step);
+    Row after = S::row_fma(S::row_load(force.force), by, before);
     if constexpr (E.accelerated) after = after + kick;
+    double touching = 0.0;
+    if constexpr (E.counts()) touching = force.touching;
     S::row_store(force.force, zero);
 
     Row spin_before = zero, spin_after = zero;
-    if constexpr (E.rotates) {
+    if constexpr (E.rotates()) {
       spin_before = S::row_load(motion.surface_spin);
-      spin_after = S::row_fma(S::row_load(force.turn), S::row_broadcast(inverse_mass * turn_step), spin_before);
+      spin_after = S::row_fma(S::row_load(force.turn), S::row_broadcast(inverse_mass) * turn, spin_before);
       S::row_store(force.turn, zero);
       S::row_store(motion.surface_spin, spin_after);
     }
+    if constexpr (E.counts()) force.friction_share = friction_share(touching);
 
     double* position = &a.granules.position[i].x;
     const Row here = S::row_load(position);
@@ -54,7 +61,7 @@ template <class S, MotionEffects E> struct MotionLoop {
     if constexpr (E.integration == Integration::verlet) {
       MotionRow& predicted = a.granules.predicted[i];
       S::row_store(predicted.velocity, S::row_fma(half, after - before, after));
-      if constexpr (E.rotates)
+      if constexpr (E.rotates())
         S::row_store(predicted.surface_spin, S::row_fma(half, spin_after - spin_before, spin_after));
     }
     return after;
@@ -64,7 +71,7 @@ template <class S, MotionEffects E> struct MotionLoop {
     const Row mass = S::row_broadcast(1.0 / inverse_mass);
     const Row laboratory = mean + frame;
     kinetic = S::row_fma(mass * laboratory, laboratory, kinetic);
-    if constexpr (E.rotates) spinning = S::row_fma(mass * mean_spin, mean_spin, spinning);
+    if constexpr (E.rotates()) spinning = S::row_fma(mass * mean_spin, mean_spin, spinning);
     moment = S::row_fma(mass, here, moment);
   }
 
@@ -80,7 +87,7 @@ template <class S, MotionEffects E> struct MotionLoop {
     friction_wall = S::row_fnma(S::row_load(g.friction_wall[i].force), mean, friction_wall);
     S::row_store(g.friction_granule[i].force, zero);
     S::row_store(g.friction_wall[i].force, zero);
-    if constexpr (E.rotates) {
+    if constexpr (E.rotates()) {
       friction_granule_turn = S::row_fnma(S::row_load(g.friction_granule[i].turn), mean_spin, friction_granule_turn);
       friction_wall_turn = S::row_fnma(S::row_load(g.friction_wall[i].turn), mean_spin, friction_wall_turn);
       S::row_store(g.friction_granule[i].turn, zero);

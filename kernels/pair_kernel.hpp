@@ -64,6 +64,15 @@ template <class S> GRANDAMP_INLINE void select_slots(std::size_t first, unsigned
   S::select(here, mask, to);
 }
 
+/// The share of a slip's momentum that friction may take at contacts of these rows.
+template <class S, class Index> GRANDAMP_INLINE typename S::Vector friction_shares(const ForceRow* force, Index index) {
+  typename S::Row rows[S::width];
+  for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(force[index(lane)].turn);
+  typename S::Vector share, unused, neither, nor_this;
+  S::columns(rows, unused, neither, nor_this, share);
+  return share;
+}
+
 /// Adds the lanes' elastic energy in list order, whatever the lane count.
 template <class S> GRANDAMP_INLINE void add_in_order(typename S::Vector v, unsigned lanes, double& sum) {
   double values[S::width];
@@ -212,11 +221,16 @@ template <class S, ContactEffects E> struct PairLoop {
     if constexpr (E.remembers()) {
       const std::uint32_t* slots = a.springs.slots + (pairs - a.touching);
       ContactMemory<S> memory = recall(pairs, slots);
-      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), f, &memory);
+      contact_forces<S, E>(c, law, S::broadcast(0.0), f, &memory);
       remember<S>(a.springs, slots, lanes, memory.spring);
       if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
+    } else if constexpr (E.counts()) {
+      const ForceRow* force = a.granules.force;
+      const Vector share = S::min(friction_shares<S>(force, [&](int lane) { return pairs[lane].first; }),
+                                  friction_shares<S>(force, [&](int lane) { return pairs[lane].second; }));
+      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share, f);
     } else
-      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), f);
+      contact_forces<S, E>(c, law, S::broadcast(0.0), f);
     max_closing = S::max(max_closing, f.closing);
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);
@@ -253,14 +267,17 @@ template <class S, ContactEffects E> struct PairLoop {
   void add_rows(const CandidatePair* pairs, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
     const Vector zero = S::broadcast(0.0);
     Row forces[width], turns[width];
-    S::rows(f.fx, f.fy, f.fz, zero, forces);
+    S::rows(f.fx, f.fy, f.fz, E.counts() ? S::broadcast(1.0) : zero, forces);
     if constexpr (E.rotates()) S::rows(f.tx, f.ty, f.tz, zero, turns);
     ForceRow* force = a.granules.force;
     for (unsigned lane = 0; lane < lanes; ++lane) {
       ForceRow& i = force[pairs[lane].first];
       ForceRow& j = force[pairs[lane].second];
       S::row_store(i.force, S::row_load(i.force) + forces[lane]);
-      S::row_store(j.force, S::row_load(j.force) - forces[lane]);
+      if constexpr (E.counts()) // both count it
+        S::row_store(j.force, S::row_fnma(last_flipped, forces[lane], S::row_load(j.force)));
+      else
+        S::row_store(j.force, S::row_load(j.force) - forces[lane]);
       if constexpr (E.rotates()) {
         S::row_store(i.turn, S::row_load(i.turn) + turns[lane]);
         S::row_store(j.turn, S::row_load(j.turn) + turns[lane]);

@@ -49,8 +49,8 @@ Vector spring_force(const Contact& contact, const Spring& before, const Vector& 
 }
 
 /// The laws, once overlap, normal, approach, slip and arms are known.
-void apply_laws(Contact& contact, double reduced_radius, double damping_mass, double slip_mass, const Law& law,
-                double step, const Spring& before, const Vector& drift) {
+void apply_laws(Contact& contact, double reduced_radius, double damping_mass, double slip_mass, int touching,
+                const Law& law, double step, const Spring& before, const Vector& drift) {
   const double stiffness = law.stiffness_coefficient * std::sqrt(reduced_radius); // k_n, Eqs. (4), (5)
   contact.spring = stiffness * std::pow(contact.overlap, 1.5);                    // Eq. (2)
   contact.elastic_energy = 0.4 * stiffness * std::pow(contact.overlap, 2.5);
@@ -75,7 +75,7 @@ void apply_laws(Contact& contact, double reduced_radius, double damping_mass, do
     if (size > sliding) contact.friction = (sliding / size) * contact.friction;
   } else if (law.coulomb && slip_speed > 0.0) {
     const double tangential_mass = law.rotation ? 2.0 / 7.0 * slip_mass : slip_mass;
-    const double bound = law.cap * tangential_mass * slip_speed / step;
+    const double bound = law.cap / (1.0 + touching) * tangential_mass * slip_speed / step;
     contact.friction = -(std::min(sliding, bound) / slip_speed) * contact.slip;
   } else {
     return;
@@ -120,8 +120,8 @@ Contact pair_contact(const Granule& i, const Granule& j, const Law& law, double 
   if (arrival)
     drift = slip_velocity(arrival->velocity_i - arrival->velocity_j,
                           rolling_of(contact, arrival->spin_i, arrival->spin_j, law), contact.normal);
-  apply_laws(contact, i.radius * j.radius / (i.radius + j.radius), effective_mass, effective_mass, law, step, before,
-             drift);
+  apply_laws(contact, i.radius * j.radius / (i.radius + j.radius), effective_mass, effective_mass,
+             std::max(i.touching, j.touching), law, step, before, drift);
   return contact;
 }
 
@@ -140,7 +140,7 @@ Contact wall_contact(const Granule& granule, double distance, const Vector& outw
   Vector drift = contact.slip;
   if (arrival)
     drift = slip_velocity(arrival->velocity_i, rolling_of(contact, arrival->spin_i, {}, law), contact.normal);
-  apply_laws(contact, granule.radius, damping_mass, slip_mass, law, step, before, drift);
+  apply_laws(contact, granule.radius, damping_mass, slip_mass, granule.touching, law, step, before, drift);
   return contact;
 }
 

@@ -11,16 +11,13 @@ using Vector = std::array<double, 3>;
 
 enum class Damping { none, tsuji, linear };
 
-/// The share of m_t |v_t| / dt that one contact's friction may take in a step.
-inline constexpr double friction_cap = 0.2;
-
 /// The constants of one kind of contact and the laws in force.
 struct Law {
   double stiffness_coefficient = 0.0; ///< C in k_n = C sqrt(R), N/m^2
   double alpha = 0.0;                 ///< Tsuji's constant
   double normal_damping = 0.0;        ///< linear damping, N s/m
   double friction = 0.0;              ///< mu
-  double cap = friction_cap;          ///< half of it where forces see velocities half a step ahead
+  double cap = 1.0;                   ///< of friction's share; half where forces see velocities half a step ahead
   Damping damping = Damping::none;
   bool tension = true;                           ///< the damping may pull at the end of a contact
   bool coulomb = false;                          ///< Coulomb friction, capped
@@ -48,6 +45,7 @@ struct Granule {
   Vector spin{};       ///< rad/s
   double radius = 0.0; ///< m
   double mass = 0.0;   ///< kg
+  int touching = 0;    ///< contacts that it had a step ago: friction takes at most 1/(1 + touching) of a slip in a step
 };
 
 /// What a contact does. All zeros when nothing touches. `normal` points from i to j, or from the granule to the wall.

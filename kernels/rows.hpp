@@ -19,12 +19,13 @@ struct alignas(64) MotionRow {
   double inverse_radius;
 };
 
-/// Forces and lever-weighted friction: `turn` is (a/r) n x f_t, N, the torque over the radius.
+/// Forces and lever-weighted friction: `turn` is (a/r) n x f_t, N, the torque over the radius. Under Coulomb friction
+/// contacts are counted as their forces are added, and the motion makes the next step's friction_share of the count.
 struct alignas(64) ForceRow {
   double force[3];
-  double unused_force;
+  double touching; ///< contacts so far in this step
   double turn[3];
-  double unused_turn;
+  double friction_share; ///< of a slip's momentum that one contact may take: 1/(1 + contacts in the step before)
 };
 
 /// Normal damping forces alone, for the ledger.

@@ -90,11 +90,14 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     if constexpr (E.remembers()) {
       const std::uint32_t* slots = a.springs.slots + (list - a.touching);
       ContactMemory<S> memory = recall(list, slots);
-      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), f, &memory);
+      contact_forces<S, E>(c, law, S::broadcast(0.0), f, &memory);
       remember<S>(a.springs, slots, lanes, memory.spring);
       if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
+    } else if constexpr (E.counts()) {
+      const Vector share = friction_shares<S>(a.granules.force, [&](int lane) { return list[lane]; });
+      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share, f);
     } else
-      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap), f);
+      contact_forces<S, E>(c, law, S::broadcast(0.0), f);
     max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
     max_closing = S::max(max_closing, f.closing);
     if constexpr (E.energies()) {
@@ -130,7 +133,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
   void add_rows(const std::uint32_t* list, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
     const Vector zero = S::broadcast(0.0);
     Row forces[width], turns[width];
-    S::rows(f.fx, f.fy, f.fz, zero, forces);
+    S::rows(f.fx, f.fy, f.fz, E.counts() ? S::broadcast(1.0) : zero, forces);
     if constexpr (E.rotates()) S::rows(f.tx, f.ty, f.tz, zero, turns);
     for (unsigned lane = 0; lane < lanes; ++lane) {
       ForceRow& i = a.granules.force[list[lane]];

@@ -25,7 +25,8 @@ class Driver {
 public:
   Driver(const Plan& plan, bool full)
       : plan_(plan), full_(full), walls_(make_walls(plan.scene.enclosure)), size_(bounding_box(plan.scene.enclosure)),
-        motion_(plan.scene, plan.time_step), granules_(plan.granules, {}) {
+        motion_(plan.scene, plan.time_step),
+        granules_(plan.granules, {.shares = plan.scene.contact.friction == FrictionLaw::coulomb}) {
     const Contact& contact = plan.scene.contact;
     kernels::ContactEffects effects;
     effects.damping = contact.damping == NormalDamping::tsuji    ? kernels::Damping::tsuji
@@ -38,7 +39,9 @@ public:
     pair_ = kernels::pair_kernel_for(set, effects);
     plane_ = kernels::plane_kernel_for(set, effects);
     side_ = kernels::side_kernel_for(set, effects);
-    move_ = kernels::motion_kernel_for(set, {.rotates = effects.rotates()});
+    move_ = kernels::motion_kernel_for(set, {.rubbing = effects.rotates()  ? kernels::Rubbing::with_rotation
+                                                        : effects.counts() ? kernels::Rubbing::without_rotation
+                                                                           : kernels::Rubbing::none});
     search_ = kernels::candidate_kernel_for(set, true);
     const ContactTable table = make_contact_table(plan.scene);
     const auto row = [&](const ContactLaw& law) {
@@ -48,7 +51,7 @@ public:
     };
     pair_law_ = row(table.granule.front());
     wall_law_ = row(table.wall.front());
-    friction_cap_ = 0.2 * (effects.rotates() ? 2.0 / 7.0 : 1.0) / plan.time_step;
+    friction_cap_ = (effects.rotates() ? 2.0 / 7.0 : 1.0) / plan.time_step;
     place(place_granules(plan));
     enclosure_ = motion_.start(0.0);
   }

@@ -29,7 +29,7 @@ struct Bed {
   Bed(int across, double pitch, double jitter, bool ledger)
       : side(across),
         granules(static_cast<std::size_t>(across) * static_cast<std::size_t>(across) * static_cast<std::size_t>(across),
-                 {.predicted = false, .ledger = ledger}) {
+                 {.predicted = false, .ledger = ledger, .shares = true}) {
     std::mt19937_64 engine(1);
     std::uniform_real_distribution<double> any(-1.0, 1.0);
     size.fill(pitch * across);
@@ -101,7 +101,7 @@ void pair_bench(benchmark::State& state, InstructionSet set, ContactEffects effe
   a.populations = 2;
   a.radius = radius;
   a.mass = mass;
-  a.friction_cap = 0.2 * (effects.rotates() ? 2.0 / 7.0 : 1.0) / time_step;
+  a.friction_cap = (effects.rotates() ? 2.0 / 7.0 : 1.0) / time_step;
   kernels::PairKernel* const kernel = kernels::pair_kernel_for(set, effects);
   kernels::ContactResult result;
   for (auto _ : state) {
@@ -142,7 +142,7 @@ void wall_bench(benchmark::State& state, InstructionSet set, ContactEffects effe
   a.laws = laws.data();
   a.direction[0] = 1.0;
   a.enclosure_inverse_mass = a.friction_inverse_mass = 1.0;
-  a.friction_cap = 0.2 * 2.0 / 7.0 / time_step;
+  a.friction_cap = 2.0 / 7.0 / time_step;
   kernels::WallKernel* const kernel =
       side ? kernels::side_kernel_for(set, effects) : kernels::plane_kernel_for(set, effects);
   kernels::WallResult result;
@@ -250,7 +250,7 @@ void register_others(InstructionSet set) {
   effects.observation = Observation::ledger;
   motion("2k_ledger", effects, bed_side);
   effects.observation = Observation::none;
-  effects.rotates = false;
+  effects.rubbing = kernels::Rubbing::none;
   motion("2k_without_rotation", effects, bed_side);
   for (const bool alike : {true, false})
     for (const auto& [name, across] : {std::pair{"2k", 13}, std::pair{"100k", 46}, std::pair{"1M", 100}})

@@ -69,6 +69,7 @@ void CellGrid::sort(Granules& granules, const GridShape& shape, const Team& team
       cell_of_[i] = static_cast<std::uint32_t>(cell);
       ++counts[piece][cell];
     }
+    granules.keep_shares(piece_begin(count, pieces, piece), end);
   });
   std::uint32_t next = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {

@@ -68,10 +68,12 @@ public:
       const reference::Contact contact = contact_now();
       if (touched && !contact.touching) return;
       touched = contact.touching;
+      const int touching = touched ? 1 : 0;
       spring_ = contact.memory;
       const Granule before = i_;
       reference::move(i_, contact.force_i, contact.torque_i, {}, {}, step_);
       mirror();
+      i_.touching = j_.touching = touching;
       seen_i_ = i_;
       if (verlet_)
         for (std::size_t k = 0; k < 3; ++k) {

@@ -18,7 +18,9 @@ Granules::Granules(std::size_t count, GranuleStorage storage)
       damping_granule(storage.ledger ? count + ghosts : 0), damping_wall(storage.ledger ? count + ghosts : 0),
       friction_granule(storage.ledger ? count + ghosts : 0), friction_wall(storage.ledger ? count + ghosts : 0),
       count_(static_cast<std::uint32_t>(count)), spare_position_(count + ghosts), spare_predicted_(predicted.size()),
-      spare_id_(count + ghosts), spare_population_(count + ghosts) {
+      spare_id_(count + ghosts), spare_population_(count + ghosts), share_(storage.shares ? count + ghosts : 0),
+      spare_share_(share_.size()) {
+  for (std::size_t i = 0; i < share_.size(); ++i) share_[i] = 1.0; // nothing has touched yet
   clear_forces(0, count_ + ghosts);
 }
 
@@ -37,6 +39,11 @@ kernels::GranuleArrays Granules::arrays() {
   return a;
 }
 
+void Granules::keep_shares(std::uint32_t first, std::uint32_t last) {
+  if (share_.size() > 0)
+    for (std::uint32_t i = first; i < last; ++i) share_[i] = force[i].friction_share;
+}
+
 void Granules::permute(const std::uint32_t* order, std::uint32_t first, std::uint32_t last) {
   auto* spare_motion = reinterpret_cast<kernels::MotionRow*>(force.data());
   for (std::uint32_t k = first; k < last; ++k) {
@@ -48,6 +55,8 @@ void Granules::permute(const std::uint32_t* order, std::uint32_t first, std::uin
   }
   if (predicted.size() > 0)
     for (std::uint32_t k = first; k < last; ++k) spare_predicted_[k] = predicted[order[k]];
+  if (share_.size() > 0)
+    for (std::uint32_t k = first; k < last; ++k) spare_share_[k] = share_[order[k]];
 }
 
 void Granules::swap_permuted() {
@@ -55,6 +64,7 @@ void Granules::swap_permuted() {
   id.swap(spare_id_);
   population.swap(spare_population_);
   predicted.swap(spare_predicted_);
+  share_.swap(spare_share_);
   motion.swap_memory(force); // where permute() put the rows
   set_ghosts();
 }
@@ -65,6 +75,8 @@ void Granules::clear_forces(std::uint32_t first, std::uint32_t last) {
   clear(damping_wall, first, last);
   clear(friction_granule, first, last);
   clear(friction_wall, first, last);
+  if (share_.size() > 0)
+    for (std::uint32_t i = first; i < last; ++i) force[i].friction_share = share_[i];
 }
 
 void Granules::set_ghosts() {

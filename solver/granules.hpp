@@ -12,6 +12,7 @@ namespace grandamp {
 struct GranuleStorage {
   bool predicted = false; ///< velocities predicted to the full step (verlet)
   bool ledger = false;    ///< forces by mechanism
+  bool shares = false;    ///< ForceRow::friction_share lasts from step to step
 };
 
 /// Structure of arrays. Each array has two ghost rows at its end (kernels::GranuleArrays).
@@ -33,6 +34,8 @@ public:
 
   kernels::GranuleArrays arrays();
 
+  /// Before force rows serve as scratch: what clear_forces() puts back into them.
+  void keep_shares(std::uint32_t first, std::uint32_t last);
   /// Row k becomes what row order[k] was. Force rows serve as scratch and hold nothing afterwards: clear_forces().
   void permute(const std::uint32_t* order, std::uint32_t first, std::uint32_t last);
   void swap_permuted();
@@ -46,6 +49,7 @@ private:
   RowArray<kernels::MotionRow> spare_predicted_;
   RowArray<std::uint32_t> spare_id_;
   RowArray<std::uint8_t> spare_population_;
+  RowArray<double> share_, spare_share_;
 };
 
 } // namespace grandamp

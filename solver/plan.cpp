@@ -95,7 +95,7 @@ void choose_list(Plan& plan) {
 
 /// Rows of position, motion and force, ids and scratch of the sort, and the candidates of a list.
 std::size_t estimate_memory(const Plan& plan) {
-  constexpr double bytes_per_granule = 32.0 + 64.0 + 64.0 + 8.0 + 36.0;
+  constexpr double bytes_per_granule = 32.0 + 64.0 + 64.0 + 8.0 + 36.0 + 16.0;
   if (plan.granules == 0) return 0;
   const double bytes_per_candidate = plan.scene.contact.friction == FrictionLaw::spring ? 8.0 + 36.0 : 8.0;
   // Half of the neighbours whose centres are within a diameter and the skin, at this solid fraction.

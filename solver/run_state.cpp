@@ -52,6 +52,10 @@ void check_granules(const RunState& s, const Plan& plan) {
   const std::size_t predicted = plan.scene.time.integrator == Integrator::verlet ? 3 * count : 0;
   demand_length("granules/predicted_velocity", s.predicted_velocity.size(), predicted);
   demand_length("granules/predicted_surface_spin", s.predicted_surface_spin.size(), predicted);
+  const bool coulomb = plan.scene.contact.friction == FrictionLaw::coulomb;
+  demand_length("granules/friction_share", s.friction_share.size(), coulomb ? count : 0);
+  for (const double share : s.friction_share)
+    if (!(share > 0.0 && share <= 1.0)) refuse(fmt::format("granules/friction_share holds {}", share));
 
   std::vector<bool> seen(count, false);
   for (const std::uint32_t id : s.id) {

@@ -50,6 +50,7 @@ struct RunState {
   std::vector<double> surface_spin;
   std::vector<double> predicted_velocity;
   std::vector<double> predicted_surface_spin;
+  std::vector<double> friction_share;
 
   ListState list;
   std::vector<std::uint32_t> spring_contacts;
@@ -141,6 +142,8 @@ template <class State, class Field> void visit_fields(State& s, Field&& field) {
   field(FieldInfo{"granules/predicted_velocity", "m/s", "verlet: at t_n, as forces see it", 3}, s.predicted_velocity);
   field(FieldInfo{"granules/predicted_surface_spin", "m/s", "verlet: at t_n, as forces see it", 3},
         s.predicted_surface_spin);
+  field(FieldInfo{"granules/friction_share", "1", "coulomb: of a slip, that one contact may take in a step"},
+        s.friction_share);
 
   field(FieldInfo{"list/segment_rows", "1", "first row and one past the last", 2}, s.list.segment_rows);
   field(FieldInfo{"list/segment_blocks", "1", "blocks of each segment"}, s.list.segment_blocks);

@@ -55,7 +55,7 @@ const StepRecord& Stepper::step(bool energies) {
   return record_;
 }
 
-StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean) {
+StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_counts) {
   rebuild_if_due();
   const auto copied = [&](const auto& rows) {
     std::remove_cvref_t<decltype(rows)> copy(rows.size());
@@ -69,6 +69,7 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean) {
   const ListAge age = age_;
   const GuardStatistics guards = guards_;
   const SpringMemory springs = springs_;
+  granules_.keep_shares(0, granules_.count());
 
   const StepRecord record = advance(energies);
 
@@ -90,6 +91,7 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean) {
   age_ = age;
   guards_ = guards;
   springs_ = springs;
+  if (!keep_counts) granules_.clear_forces(0, granules_.count());
   return record;
 }
 

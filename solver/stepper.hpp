@@ -50,7 +50,8 @@ public:
   const StepRecord& step(bool energies);
   /// What a step would tell now; afterwards everything is as before, but for a list that was due being rebuilt.
   /// `mean`, if given, receives the velocities at t_n in the enclosure's frame, by row.
-  StepRecord trial(bool energies, RowArray<kernels::MotionRow>* mean = nullptr);
+  /// `keep_counts`: the contacts met count as those of the step before.
+  StepRecord trial(bool energies, RowArray<kernels::MotionRow>* mean = nullptr, bool keep_counts = false);
 
   std::int64_t step_number() const noexcept { return step_number_; }
   double time() const noexcept { return static_cast<double>(step_number_) * time_step_; }

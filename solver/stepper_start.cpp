@@ -64,9 +64,6 @@ std::vector<kernels::SpringLawRow> spring_law_rows(const std::vector<ContactLaw>
   return rows;
 }
 
-/// Share of the slip's momentum that friction may take in a step. With 1 a granule held by three others makes energy;
-/// 0.2 is passive up to 14 contacts.
-constexpr double friction_cap_share = 0.2;
 /// Verlet's forces see the velocity half a step ahead: a slip s that loses the share a of itself in a step follows
 /// s'' = (1 - 3a/2) s' + (a/2) s, which grows beyond a = 1 where leapfrog's s' = (1 - a) s bears 2.
 constexpr double verlet_share = 0.5;
@@ -108,15 +105,16 @@ Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa,
   pair_spring_laws_ = spring_law_rows(contacts_.granule);
   wall_spring_laws_ = spring_law_rows(contacts_.wall);
   const bool verlet = plan_.scene.time.integrator == Integrator::verlet;
-  friction_cap_ = friction_cap_share * (verlet ? verlet_share : 1.0) *
-                  (contact_effects_.rotates() ? rolling_mass_share : 1.0) / time_step_;
+  friction_cap_ = (verlet ? verlet_share : 1.0) * (contact_effects_.rotates() ? rolling_mass_share : 1.0) / time_step_;
   if (plan_.scene.structure && plan_.granules > 0) {
     enclosure_inverse_mass_ = 1.0 / plan_.scene.structure->mass;
     // Many walls' contacts brake the same structure at once: each is allowed its share of that mass.
     friction_inverse_mass_ = enclosure_inverse_mass_ * most_wall_contacts(plan_);
   }
   motion_effects_.integration = verlet ? kernels::Integration::verlet : kernels::Integration::leapfrog;
-  motion_effects_.rotates = contact_effects_.rotates();
+  motion_effects_.rubbing = contact_effects_.rotates()  ? kernels::Rubbing::with_rotation
+                            : contact_effects_.counts() ? kernels::Rubbing::without_rotation
+                                                        : kernels::Rubbing::none;
   motion_effects_.accelerated = motion_.moves() || plan_.scene.gravity != Vector3{0.0, 0.0, 0.0};
   choose_kernels();
 
@@ -151,7 +149,8 @@ void Stepper::choose_kernels() {
 void Stepper::place(const Placement& start) {
   const std::size_t count = start.position.size();
   granules_ = Granules(count, {.predicted = motion_effects_.integration == kernels::Integration::verlet,
-                               .ledger = plan_.scene.output.energy});
+                               .ledger = plan_.scene.output.energy,
+                               .shares = contact_effects_.counts()});
   const double frame = motion_.initial_velocity();
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3 &p = start.position[i], &v = start.velocity[i], &w = start.spin[i];
@@ -175,6 +174,7 @@ void Stepper::take_half_step_back() {
   // Forces at t = 0, with the velocities of t = 0, through one kick that is then halved and turned round.
   enclosure_ = {motion_.initial_displacement(), motion_.initial_velocity()};
   rebuild_if_due();
+  if (contact_effects_.counts()) trial(false, nullptr, true);
   results_.assign(list_.segments().size(), {});
   const Kernels& kernels = kernels_for(false);
   const SpringMemory springs = springs_;

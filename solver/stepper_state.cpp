@@ -76,6 +76,9 @@ void Stepper::save(RunState& s) const {
   s.surface_spin = columns_of(granules_.motion, count, &MotionRow::surface_spin);
   s.predicted_velocity = columns_of(granules_.predicted, count, &MotionRow::velocity);
   s.predicted_surface_spin = columns_of(granules_.predicted, count, &MotionRow::surface_spin);
+  s.friction_share.clear();
+  if (contact_effects_.counts())
+    for (std::uint32_t i = 0; i < count; ++i) s.friction_share.push_back(granules_.force[i].friction_share);
 
   s.list = state_of(list_, count);
   s.spring_contacts.clear();
@@ -142,7 +145,8 @@ Stepper::Stepper(const Plan& plan, const RunState& s, kernels::InstructionSet is
 
 void Stepper::restore_granules(const RunState& s) {
   granules_ = Granules(s.id.size(), {.predicted = motion_effects_.integration == kernels::Integration::verlet,
-                                     .ledger = plan_.scene.output.energy});
+                                     .ledger = plan_.scene.output.energy,
+                                     .shares = contact_effects_.counts()});
   const auto three = [](const std::vector<double>& values, std::size_t i, double(&to)[3]) {
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::begin(to));
   };
@@ -155,6 +159,7 @@ void Stepper::restore_granules(const RunState& s) {
     three(s.surface_spin, i, row.surface_spin);
     row.inverse_mass = s.inverse_mass[i];
     row.inverse_radius = 1.0 / s.radius[i];
+    if (contact_effects_.counts()) granules_.force[i].friction_share = s.friction_share[i];
     if (granules_.predicted.size() == 0) continue;
     granules_.predicted[i] = row;
     three(s.predicted_velocity, i, granules_.predicted[i].velocity);

@@ -229,6 +229,7 @@ void VerletList::search_all(Granules& granules, const std::vector<Wall>& walls, 
 }
 
 void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall>& walls, const Search& search) {
+  granules.keep_shares(0, granules.count());
   const Coordinates coordinates(granules);
   coordinates.fill(granules, 0, granules.count());
   kernels::CandidateArguments arguments;

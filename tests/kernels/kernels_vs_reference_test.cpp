@@ -26,11 +26,12 @@ struct Expected {
     }
   };
   std::vector<Sum> force, turn, damping, rubbing;
+  std::vector<int> touching;
   double elastic = 0.0, spring = 0.0, max_overlap = 0.0, max_closing = 0.0;
   std::int64_t contacts = 0;
   Sum total; ///< on the granules
 
-  explicit Expected(std::size_t count) : force(count), turn(count), damping(count), rubbing(count) {}
+  explicit Expected(std::size_t count) : force(count), turn(count), damping(count), rubbing(count), touching(count) {}
 };
 
 /// Largest difference of the rows from what is expected, over its size. The overlap is a difference of lengths a
@@ -56,6 +57,10 @@ constexpr double tolerance = 1.0e-10;
 
 void check_rows(const Bed& bed, const Expected& expected, ContactEffects effects, bool wall) {
   const double within = tolerance_of(effects);
+  for (std::size_t i = 0; i < expected.touching.size() && effects.counts(); ++i) {
+    CHECK(bed.force[i].touching == expected.touching[i]);
+    CHECK(bed.force[i].friction_share == 1.0 / (1.0 + bed.granules[i].touching));
+  }
   CHECK(error_of(expected.force, bed.force.front().force, 8) < within);
   if (effects.rotates()) CHECK(error_of(expected.turn, bed.force.front().turn, 8) < within);
   if (effects.ledger() && effects.damped())
@@ -98,6 +103,7 @@ double size_of_friction(const reference::Contact& contact, const reference::Gran
 
 void add_contact(Expected& expected, const reference::Contact& contact, std::size_t i, double radius_i,
                  double friction_size = 0.0) {
+  ++expected.touching[i];
   expected.force[i].add(1.0, contact.force_i);
   expected.turn[i].add(1.0 / radius_i, contact.torque_i);
   expected.damping[i].add(-contact.damping, contact.normal);
@@ -108,7 +114,7 @@ void add_contact(Expected& expected, const reference::Contact& contact, std::siz
 }
 
 double cap(ContactEffects effects) {
-  return reference::friction_cap * (effects.rotates() ? 2.0 / 7.0 : 1.0) / step;
+  return (effects.rotates() ? 2.0 / 7.0 : 1.0) / step;
 }
 
 void pad(std::vector<std::uint32_t>& list, std::uint32_t ghost) {
@@ -157,6 +163,7 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
           add_contact(expected, contact, pair.first, a.radius, friction_size);
           for (auto* sums : {&expected.force, &expected.turn, &expected.rubbing})
             (*sums)[pair.second].size += friction_size;
+          ++expected.touching[pair.second];
           expected.force[pair.second].add(-1.0, contact.force_i);
           expected.turn[pair.second].add(1.0 / b.radius, contact.torque_j);
           expected.damping[pair.second].add(contact.damping, contact.normal);

@@ -13,15 +13,19 @@ using namespace grandamp::test;
 TEST_CASE("motion kernels: every instruction set and set of effects against the oracle") {
   for (const InstructionSet machine : machines())
     for (const auto integration : {Integration::leapfrog, Integration::verlet})
-      for (const bool rotates : {true, false})
+      for (const auto rubbing : {Rubbing::none, Rubbing::without_rotation, Rubbing::with_rotation})
         for (const bool accelerated : {true, false})
           for (const auto observation :
                {Observation::none, Observation::energies, Observation::ledger, Observation::ledger_and_energies})
             for (const std::uint32_t last : {4U, 5U, 10U, 27U, 48U}) {
+              const bool rotates = rubbing == Rubbing::with_rotation, counts = rubbing != Rubbing::none;
               const std::string which = std::string(name(machine)) +
                                         (integration == Integration::verlet ? ", verlet" : ", leapfrog") +
-                                        (rotates ? ", rotates" : "") + (accelerated ? ", accelerated" : "") +
-                                        ", observation " + std::to_string(static_cast<int>(observation));
+                                        (rotates  ? ", rotates"
+                                         : counts ? ", counts"
+                                                  : "") +
+                                        (accelerated ? ", accelerated" : "") + ", observation " +
+                                        std::to_string(static_cast<int>(observation));
               CAPTURE(which);
               CAPTURE(last);
               const ContactEffects spins{kernels::Damping::tsuji, Friction::coulomb, Variety::sizes, observation};
@@ -38,6 +42,8 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                   }
               };
               fill(bed.force, 3.0, rotates);
+              for (ForceRow& row : bed.force)
+                if (counts) row.touching = static_cast<double>(random.engine() % 40);
               fill(bed.damping_granule, 0.3, false);
               fill(bed.damping_wall, 0.4, false);
               fill(bed.friction_granule, 0.5, rotates);
@@ -90,7 +96,7 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                 arguments.frame_velocity[k] = frame[k];
               }
               MotionResult result;
-              const MotionEffects effects{integration, rotates, accelerated, observation};
+              const MotionEffects effects{integration, rubbing, accelerated, observation};
               motion_kernel_for(machine, effects)(arguments, result);
 
               double position = 0.0, velocity = 0.0, prediction = 0.0, left = 0.0;
@@ -112,6 +118,10 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                     left += std::abs(bed.damping_granule[i].force[k]) + std::abs(bed.damping_wall[i].force[k]) +
                             std::abs(bed.friction_granule[i].force[k]) + std::abs(bed.friction_granule[i].turn[k]) +
                             std::abs(bed.friction_wall[i].force[k]) + std::abs(bed.friction_wall[i].turn[k]);
+                }
+                if (counts) {
+                  CHECK(bed.force[i].touching == 0.0);
+                  CHECK(bed.force[i].friction_share == 1.0 / (1.0 + untouched.force[i].touching));
                 }
                 CHECK(bed.motion[i].inverse_mass == untouched.motion[i].inverse_mass);
                 CHECK(bed.motion[i].inverse_radius == untouched.motion[i].inverse_radius);

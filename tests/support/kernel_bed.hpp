@@ -123,6 +123,7 @@ inline Bed make_bed(ContactEffects effects, unsigned seed) {
           g.velocity = random.vector(fast);
           g.spin = random.vector(fast / radius);
         }
+        g.touching = static_cast<int>(random.engine() % (bed.granules.size() == 5 ? 100 : 6));
         bed.granules.push_back(g);
         bed.population.push_back(static_cast<std::uint8_t>(random.engine() % bed.populations));
       }
@@ -169,6 +170,7 @@ inline Bed make_bed(ContactEffects effects, unsigned seed) {
     bed.population.push_back(0);
   }
   bed.force.resize(count + 2);
+  for (std::size_t i = 0; i < count; ++i) bed.force[i].friction_share = 1.0 / (1.0 + bed.granules[i].touching);
   bed.friction_granule.resize(count + 2);
   bed.friction_wall.resize(count + 2);
   bed.damping_granule.resize(count + 2);

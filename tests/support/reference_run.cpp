@@ -140,7 +140,7 @@ ReferenceHost ReferenceEnclosure::start(double reaction) const {
 ReferenceRun::ReferenceRun(const Scene& scene, double step)
     : scene_(scene), step_(step), enclosure_(scene, step), populations_(scene.populations.size()) {
   Law common = laws_of(scene.contact);
-  if (scene.time.integrator == Integrator::verlet) common.cap = 0.5 * reference::friction_cap;
+  if (scene.time.integrator == Integrator::verlet) common.cap = 0.5;
   rotation_ = common.rotation;
   const ContactConstants& granule = scene.contact.granule;
   for (const Population& a : scene.populations) {
@@ -207,6 +207,9 @@ ReferenceRun::ReferenceRun(const Scene& scene, double step)
     wall_slip_inverse_mass_ = std::max(1.0, std::min(fit, static_cast<double>(initial_.size()))) / enclosure_.mass();
   }
 
+  // Contacts share a slip: those of t = 0 are counted before their forces are used.
+  for (const Touch& touch : forces(initial_, initial_, {}, true).touches) count(touch, initial_);
+
   // Half a step back: u(-1/2) = v0 - dt/2 (F/m + g) in the laboratory, less the enclosure's V(-1/2).
   const Forces at_start = forces(initial_, initial_, {}, true);
   state_.host = enclosure_.start(at_start.reaction);
@@ -228,6 +231,11 @@ const Law& ReferenceRun::pair_law(std::size_t i, std::size_t j) const {
 
 const Law& ReferenceRun::wall_law(std::size_t i) const {
   return wall_laws_[static_cast<std::size_t>(population_[i])];
+}
+
+void ReferenceRun::count(const Touch& touch, std::vector<Granule>& granules) {
+  ++granules[touch.i].touching;
+  if (touch.j != touch.i) ++granules[touch.j].touching;
 }
 
 ReferenceRun::Forces ReferenceRun::forces(const std::vector<Granule>& moving, const std::vector<Granule>& arrived,
@@ -356,6 +364,9 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
       mean[i].spin[k] = 0.5 * (old.spin[k] + one.spin[k]);
     }
   }
+
+  for (Granule& one : state.granules) one.touching = 0;
+  for (const Touch& touch : acting.touches) count(touch, state.granules);
 
   // The ledger, with the mean velocities; half of this step belongs to a sample at t_n.
   Ledger lost;
