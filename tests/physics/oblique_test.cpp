@@ -52,7 +52,7 @@ TEST_CASE_TEMPLATE("sticking on a wall leaves 5/7 of the tangential speed, rolli
   CHECK(end.spin[0][1] * radius == doctest::Approx(5.0 / 7.0 * tangential).epsilon(2.0e-4));
 }
 
-TEST_CASE_TEMPLATE("sticking at eight steps a contact: the cap leaves slip, never reverses it, and trades speed for "
+TEST_CASE_TEMPLATE("sticking at eight steps a contact: no slip is left, none is turned round, and speed is traded for "
                    "spin at the sphere's own rate",
                    Run, OracleRun, SolverRun) {
   const double tangential = 0.005;
@@ -62,9 +62,8 @@ TEST_CASE_TEMPLATE("sticking at eight steps a contact: the cap leaves slip, neve
   const GranuleTable end = run.granules();
   const double speed = end.velocity[0][0], surface = end.spin[0][1] * radius;
   const double slip = speed - surface;
-  // Each of the seven to nine steps in contact takes at most 1/5 of the slip.
-  CHECK(slip >= std::pow(0.8, 9.0) * tangential);
-  CHECK(slip <= std::pow(0.8, 6.0) * tangential);
+  // The first step in contact may take all of it, as a sphere that is not pressed in would show it.
+  CHECK(std::abs(slip) <= 1.0e-3 * tangential);
   CHECK(tangential - speed == doctest::Approx(0.4 * surface).epsilon(5.0e-4));
   CHECK(speed == doctest::Approx(5.0 / 7.0 * tangential + 2.0 / 7.0 * slip).epsilon(5.0e-4));
 }

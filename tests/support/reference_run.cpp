@@ -208,7 +208,7 @@ ReferenceRun::ReferenceRun(const Scene& scene, double step)
   }
 
   // Contacts share a slip: those of t = 0 are counted before their forces are used.
-  for (const Touch& touch : forces(initial_, initial_, {}, true).touches) count(touch, initial_);
+  for (const Touch& touch : forces(initial_, initial_, {}, true).touches) count_touch(touch, initial_);
 
   // Half a step back: u(-1/2) = v0 - dt/2 (F/m + g) in the laboratory, less the enclosure's V(-1/2).
   const Forces at_start = forces(initial_, initial_, {}, true);
@@ -233,7 +233,7 @@ const Law& ReferenceRun::wall_law(std::size_t i) const {
   return wall_laws_[static_cast<std::size_t>(population_[i])];
 }
 
-void ReferenceRun::count(const Touch& touch, std::vector<Granule>& granules) {
+void ReferenceRun::count_touch(const Touch& touch, std::vector<Granule>& granules) {
   ++granules[touch.i].touching;
   if (touch.j != touch.i) ++granules[touch.j].touching;
 }
@@ -366,7 +366,7 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
   }
 
   for (Granule& one : state.granules) one.touching = 0;
-  for (const Touch& touch : acting.touches) count(touch, state.granules);
+  for (const Touch& touch : acting.touches) count_touch(touch, state.granules);
 
   // The ledger, with the mean velocities; half of this step belongs to a sample at t_n.
   Ledger lost;

@@ -88,7 +88,7 @@ private:
     double spring_granule = 0.0, spring_wall = 0.0; ///< in tangential springs, J
   };
 
-  static void count(const Touch& touch, std::vector<reference::Granule>& granules);
+  static void count_touch(const Touch& touch, std::vector<reference::Granule>& granules);
   const reference::Law& pair_law(std::size_t i, std::size_t j) const;
   const reference::Law& wall_law(std::size_t i) const;
   /// Contact forces at the granules' positions, damping and slip from `moving`'s velocities and spins; `arrived` has
