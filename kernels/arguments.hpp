@@ -4,6 +4,7 @@
 #include "kernels/contact_law.hpp"
 #include "kernels/rows.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -45,6 +46,13 @@ struct ContactResult {
   std::int64_t contacts = 0; ///< only with energies
 };
 
+/// Rows that the pairs after these will reach, asked of memory a few at a time between contacts: asked for all at once,
+/// the processor would wait for them.
+struct RowsAhead {
+  std::uint32_t next = 0;
+  std::uint32_t last = 0; ///< one past
+};
+
 struct PairArguments {
   GranuleArrays granules;
   const CandidatePair* pairs = nullptr;
@@ -57,10 +65,11 @@ struct PairArguments {
   double mass = 0.0;         ///< of every granule (Variety::alike), kg
   double friction_cap = 0.0; ///< (2/7, or 1 without rotation) / dt, 1/s; Verlet: half of it
   SpringArguments springs;   ///< rows of `pairs`
+  std::array<RowsAhead, 2> ahead{};
 };
 
 /// Candidates tested before their contacts are worked off.
-inline constexpr std::size_t pair_chunk = 4096;
+inline constexpr std::size_t pair_chunk = 512;
 
 /// Contacts that are worked off together.
 inline constexpr std::size_t contact_batch = 64;

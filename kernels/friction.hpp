@@ -6,9 +6,9 @@
 namespace grandamp::kernels {
 
 /// g in f_t = -g v_t: mu |F_n| / |v_t|, at most `cap` = c m_t / dt, so that one step cannot reverse the slip. At zero
-/// slip the quotient is huge and the cap holds. c is 1/(1 + n), n the contacts that the busier granule had a step ago
-/// (friction_share): stopping one slip alone takes m_t v_t^2 / 2, no more than its granules' kinetic energy, so all of
-/// a granule's contacts together make no energy as long as c <= 2/n, n the contacts that it has now.
+/// slip the quotient is huge and the cap holds. c is the lesser friction_share of the two granules: stopping one slip
+/// alone takes m_t v_t^2 / 2, no more than its granules' kinetic energy, so all of a granule's contacts together make
+/// no energy as long as c <= 2/n, n the contacts that it has now.
 template <class S>
 GRANDAMP_INLINE typename S::Vector coulomb_coefficient(typename S::Vector mu, typename S::Vector normal_force,
                                                        typename S::Vector slip_squared, typename S::Vector cap) {
@@ -17,14 +17,15 @@ GRANDAMP_INLINE typename S::Vector coulomb_coefficient(typename S::Vector mu, ty
   return S::min(mu * S::abs(normal_force) * (S::broadcast(1.0) / S::sqrt(slip_squared + tiny)), cap);
 }
 
-/// 1/(1 + touching).
+/// 1/(1 + n) for a granule that had n contacts a step ago, 1/2 if it had none: passive as long as n does not more than
+/// double, and grow by two, in a step.
 GRANDAMP_INLINE double friction_share(double touching) {
   struct Table {
     double values[32];
   };
   static constexpr Table table = [] {
     Table t{};
-    for (int n = 0; n < 32; ++n) t.values[n] = 1.0 / (1.0 + n);
+    for (int n = 0; n < 32; ++n) t.values[n] = n > 0 ? 1.0 / (1.0 + n) : 0.5;
     return t;
   }();
   const auto n = static_cast<unsigned>(touching);

@@ -107,9 +107,20 @@ GRANDAMP_INLINE void difference(const PairArguments& a, const CandidatePair* pai
   if constexpr (alike) radii = S::broadcast(2.0 * a.radius);
 }
 
+GRANDAMP_INLINE void ask_for_a_row(const GranuleArrays& granules, std::array<RowsAhead, 2>& ahead) {
+  for (RowsAhead& rows : ahead)
+    if (rows.next < rows.last) {
+      __builtin_prefetch(&granules.position[rows.next], 1);
+      __builtin_prefetch(&granules.motion[rows.next], 1);
+      __builtin_prefetch(&granules.force[rows.next], 1);
+      ++rows.next;
+    }
+}
+
 /// Moves the pairs that touch to the scratch list; returns their number.
 template <class S, ContactEffects E>
-GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const CandidatePair* pairs, std::size_t count) {
+GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const CandidatePair* pairs, std::size_t count,
+                                     std::array<RowsAhead, 2>& ahead) {
   using Vector = typename S::Vector;
   std::size_t n = 0;
   for (std::size_t k = 0; k < count; k += S::width) {
@@ -120,6 +131,7 @@ GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const CandidatePair
     if constexpr (E.remembers())
       select_slots<S>(static_cast<std::size_t>(pairs - a.pairs) + k, mask, a.springs.slots + n);
     n += S::select(pairs + k, mask, a.touching + n);
+    if (k % 8 == 0) ask_for_a_row(a.granules, ahead);
   }
   return n;
 }
@@ -326,9 +338,11 @@ template <class S, ContactEffects E> struct PairLoop {
 /// Adds the contact forces of the candidate pairs to the force rows (and the ledger's rows).
 template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, ContactResult& result) {
   PairLoop<S, E> loop{.a = a, .max_overlap = S::broadcast(result.max_overlap)};
+  std::array<RowsAhead, 2> ahead = a.ahead;
   for (std::size_t begin = 0; begin < a.count; begin += pair_chunk) {
     const std::size_t left = a.count - begin;
-    const std::size_t n = touching<typename S::Double, E>(a, a.pairs + begin, left < pair_chunk ? left : pair_chunk);
+    const std::size_t n =
+        touching<typename S::Double, E>(a, a.pairs + begin, left < pair_chunk ? left : pair_chunk, ahead);
     if (n == 0) continue;
     // The last, partly filled vector repeats its last contact in the lanes that are not used.
     for (std::size_t k = n; k % contact_padding != 0; ++k) a.touching[k] = a.touching[n - 1];
@@ -345,14 +359,17 @@ template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, Co
           work(a.touching + first + k, static_cast<unsigned>(left_here - k < S::width ? left_here - k : S::width),
                k / S::width);
       };
-      each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v)
-               __attribute__((always_inline)) { loop.geometry(pairs, lanes, geometry[v]); });
+      each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v) __attribute__((always_inline)) {
+        loop.geometry(pairs, lanes, geometry[v]);
+        ask_for_a_row(a.granules, ahead);
+      });
       each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v)
                __attribute__((always_inline)) { loop.forces(pairs, lanes, geometry[v], forces[v], result); });
       each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v)
                __attribute__((always_inline)) { loop.add_rows(pairs, lanes, geometry[v], forces[v]); });
     }
   }
+  while (ahead[0].next < ahead[0].last || ahead[1].next < ahead[1].last) ask_for_a_row(a.granules, ahead);
   result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
   result.max_closing = largest<S>(loop.max_closing, result.max_closing);
 }

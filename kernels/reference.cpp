@@ -75,7 +75,7 @@ void apply_laws(Contact& contact, double reduced_radius, double damping_mass, do
     if (size > sliding) contact.friction = (sliding / size) * contact.friction;
   } else if (law.coulomb && slip_speed > 0.0) {
     const double tangential_mass = law.rotation ? 2.0 / 7.0 * slip_mass : slip_mass;
-    const double bound = law.cap / (1.0 + touching) * tangential_mass * slip_speed / step;
+    const double bound = law.cap / (1.0 + std::max(touching, 1)) * tangential_mass * slip_speed / step;
     contact.friction = -(std::min(sliding, bound) / slip_speed) * contact.slip;
   } else {
     return;

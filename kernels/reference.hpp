@@ -45,7 +45,8 @@ struct Granule {
   Vector spin{};       ///< rad/s
   double radius = 0.0; ///< m
   double mass = 0.0;   ///< kg
-  int touching = 0;    ///< contacts that it had a step ago: friction takes at most 1/(1 + touching) of a slip in a step
+  int touching =
+      0; ///< contacts that it had a step ago: friction takes at most 1/(1 + touching) of a slip in a step, or half
 };
 
 /// What a contact does. All zeros when nothing touches. `normal` points from i to j, or from the granule to the wall.

@@ -25,7 +25,7 @@ struct alignas(64) ForceRow {
   double force[3];
   double touching; ///< contacts so far in this step
   double turn[3];
-  double friction_share; ///< of a slip's momentum that one contact may take: 1/(1 + contacts in the step before)
+  double friction_share; ///< of a slip's momentum that one contact may take (kernels/friction.hpp)
 };
 
 /// Normal damping forces alone, for the ledger.

@@ -20,7 +20,7 @@ Granules::Granules(std::size_t count, GranuleStorage storage)
       count_(static_cast<std::uint32_t>(count)), spare_position_(count + ghosts), spare_predicted_(predicted.size()),
       spare_id_(count + ghosts), spare_population_(count + ghosts), share_(storage.shares ? count + ghosts : 0),
       spare_share_(share_.size()) {
-  for (std::size_t i = 0; i < share_.size(); ++i) share_[i] = 1.0; // nothing has touched yet
+  for (std::size_t i = 0; i < share_.size(); ++i) share_[i] = 0.5; // nothing has touched yet
   clear_forces(0, count_ + ghosts);
 }
 

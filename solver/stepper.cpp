@@ -153,21 +153,6 @@ double Stepper::approach_share() const {
   return skin_ > 0.0 ? 2.0 * age_.travelled / skin_ : 1.0;
 }
 
-namespace {
-
-/// Asks for the rows that the next block will reach: partners in the layer ahead come in no order that a processor
-/// would guess. Returns `last`.
-std::uint32_t touch_rows(const kernels::GranuleArrays& rows, std::uint32_t first, std::uint32_t last) {
-  for (std::uint32_t i = first; i < last; ++i) {
-    __builtin_prefetch(&rows.position[i], 1);
-    __builtin_prefetch(&rows.motion[i], 1);
-    __builtin_prefetch(&rows.force[i], 1);
-  }
-  return last > first ? last : first;
-}
-
-} // namespace
-
 kernels::PairArguments Stepper::pair_arguments(Segment& segment) {
   kernels::PairArguments a;
   a.granules = granules_.arrays();
@@ -217,8 +202,14 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
     std::uint32_t touched = segment.first;
     for (std::size_t b = 0; b < segment.blocks.size(); ++b) {
       const Block& block = segment.blocks[b];
-      if (touch_ahead_ && b + 1 < segment.blocks.size())
-        touched = touch_rows(motion.granules, touched, segment.blocks[b + 1].front);
+      pairs.ahead = {};
+      if (touch_ahead_ && b + 1 < segment.blocks.size()) {
+        // Partners in the layer ahead come in no order that a processor would guess, and where a layer is larger than
+        // its second-level cache the next block's own rows have left it again.
+        const Block& next = segment.blocks[b + 1];
+        pairs.ahead = {kernels::RowsAhead{touched, next.front}, kernels::RowsAhead{next.first, next.last}};
+        touched = std::max(touched, next.front);
+      }
       pairs.pairs = segment.inner.data() + block.pairs.first;
       pairs.count = block.pairs.to_test(approach);
       if (remembers()) pairs.springs = spring_arguments(s, springs_.of(s).inner, block.pairs.first, pair_spring_laws_);

@@ -170,7 +170,8 @@ inline Bed make_bed(ContactEffects effects, unsigned seed) {
     bed.population.push_back(0);
   }
   bed.force.resize(count + 2);
-  for (std::size_t i = 0; i < count; ++i) bed.force[i].friction_share = 1.0 / (1.0 + bed.granules[i].touching);
+  for (std::size_t i = 0; i < count; ++i)
+    bed.force[i].friction_share = 1.0 / (1.0 + std::max(bed.granules[i].touching, 1));
   bed.friction_granule.resize(count + 2);
   bed.friction_wall.resize(count + 2);
   bed.damping_granule.resize(count + 2);
