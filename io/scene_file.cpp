@@ -123,6 +123,7 @@ private:
 
   bool make_file_paths_absolute() {
     bool any = tree_["excitation"].is_table() && make_absolute("excitation.file");
+    any = (tree_["structure"].is_table() && make_absolute("structure.matrices")) || any;
     const toml::array* populations = tree_["granules"].as_array();
     for (std::size_t i = 0; populations != nullptr && i < populations->size(); ++i) {
       const std::optional<std::string> file = (*populations)[i].as_table()->get_as<std::string>("file") != nullptr

@@ -37,7 +37,9 @@ void read_strength(TableReader& root, TableReader& table, Scene& scene) {
   if (key == "force") scene.excitation.force = table.number(key);
   if (key == "static_deflection") {
     scene.excitation.static_deflection = table.number(key);
-    if (scene.structure && scene.structure->stiffness == 0.0 && scene.excitation.static_deflection)
+    if (scene.structure && scene.structure->modes.size > 0)
+      table.wrong(key, "a structure of several modes has no one stiffness", "force, in N");
+    else if (scene.structure && scene.structure->stiffness == 0.0 && scene.excitation.static_deflection)
       table.wrong(key, "gives no force, since the structure has no stiffness", "force, in N");
   }
 }
@@ -79,6 +81,9 @@ void read_base(TableReader& root, TableReader& table, Scene& scene) {
   if (!root.has("structure"))
     table.wrong("kind", "a foundation needs a [structure] to stand on it",
                 "a [structure]; or kind = \"prescribed\", the enclosure's own motion");
+  if (scene.structure && scene.structure->modes.size > 0)
+    table.wrong("kind", "a foundation in motion is for a structure of one degree of freedom",
+                "a force; or a [structure] of mass, stiffness and damping");
   excitation.frequency = needed(table, "frequency", "of the foundation's motion", "Hz, above 0", positive);
   const std::string_view key = table.one_of({"amplitude", "acceleration"});
   if (key.empty())
@@ -166,6 +171,9 @@ void read_table(TableReader& root, TableReader& table, Scene& scene) {
   const bool force = file->quantity == TableQuantity::force;
   if (root.has("structure")) {
     table.idle("direction", "the structure has one", "no direction, or no [structure]");
+    if (!force && scene.structure && scene.structure->modes.size > 0)
+      table.wrong("file", "a foundation in motion is for a structure of one degree of freedom",
+                  "a table of forces; or a [structure] of mass, stiffness and damping");
   } else if (force) {
     table.pass("direction");
     table.wrong("file", "a force needs a [structure] to act on",

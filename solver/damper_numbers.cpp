@@ -2,6 +2,7 @@
 
 #include "solver/excitation_signal.hpp"
 #include "solver/measures.hpp"
+#include "solver/several_modes.hpp"
 
 #include <limits>
 
@@ -27,6 +28,7 @@ double bare_acceleration(const Scene& scene) {
   if (scene.excitation.kind == ExcitationKind::prescribed)
     return scene.excitation.velocity ? 0.0 : std::abs(scene.excitation.amplitude) * w * w;
   if (!scene.structure) return is_motion_table(scene.excitation) ? largest_acceleration(scene.excitation) : none;
+  if (has_several_modes(scene)) return none; // no one formula
   const Structure& s = *scene.structure;
   if (scene.excitation.kind == ExcitationKind::none) {
     const double natural = std::sqrt(s.stiffness / s.mass);
@@ -65,7 +67,12 @@ DamperNumbers damper_numbers(const Scene& scene) {
   numbers.clearance = clearance(scene, numbers.fill_fraction);
   numbers.acceleration = bare_acceleration(scene) / (gravity > 0.0 ? gravity : standard_gravity);
   numbers.mass_ratio = numbers.natural_frequency = numbers.loaded_frequency = none;
-  if (scene.structure) {
+  if (has_several_modes(scene)) {
+    const ModalNumbers modal = modal_numbers(scene.structure->modes, numbers.granule_mass);
+    numbers.mass_ratio = numbers.granule_mass / modal.enclosure_mass;
+    numbers.natural_frequency = modal.frequency.front();
+    numbers.loaded_frequency = modal.loaded_frequency;
+  } else if (scene.structure) {
     const Structure& s = *scene.structure;
     numbers.mass_ratio = numbers.granule_mass / s.mass;
     if (s.stiffness > 0.0) {

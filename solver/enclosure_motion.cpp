@@ -4,6 +4,7 @@
 #include "solver/driven_structure.hpp"
 #include "solver/linear_solution.hpp"
 #include "solver/measures.hpp"
+#include "solver/several_modes.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -41,6 +42,19 @@ double form_at(const std::array<double, 15>& form, const std::array<double, 5>& 
   return sum;
 }
 
+/// What drives the structure, N or m.
+Drive drive_of(const Scene& scene) {
+  Drive drive;
+  const ExcitationKind kind = scene.excitation.kind;
+  const bool sine = kind == ExcitationKind::base || kind == ExcitationKind::harmonic;
+  drive.frequency = sine ? scene.excitation.frequency : highest_frequency(scene.excitation);
+  if (kind == ExcitationKind::harmonic) drive.force = driving_force(scene);
+  drive.base = base_amplitude(scene);
+  drive.signal = make_force_signal(scene);
+  if (is_motion_table(scene.excitation)) drive.base_motion = make_motion(scene.excitation);
+  return drive;
+}
+
 } // namespace
 
 EnclosureMotion::EnclosureMotion(const Scene& scene, double time_step) : time_step_(time_step) {
@@ -48,7 +62,9 @@ EnclosureMotion::EnclosureMotion(const Scene& scene, double time_step) : time_st
   cycles_per_step_ = frequency * time_step;
   sine_half_ = std::sin(std::numbers::pi * cycles_per_step_);
   cosine_half_ = std::cos(std::numbers::pi * cycles_per_step_);
-  if (scene.structure) {
+  if (grandamp::has_several_modes(scene)) {
+    prepare_modes(scene);
+  } else if (scene.structure) {
     kind_ = Kind::structure;
     prepare_structure(scene);
   } else if (scene.excitation.kind == ExcitationKind::prescribed) {
@@ -108,17 +124,23 @@ void EnclosureMotion::prepare_structure(const Scene& scene) {
   backward_velocity_ = row_of(solution.growth, 1);
 }
 
+void EnclosureMotion::prepare_modes(const Scene& scene) {
+  kind_ = Kind::modes;
+  direction_ = scene.structure->direction;
+  modes_ = std::make_shared<const SeveralModes>(scene.structure->modes);
+  driven_ = std::make_shared<const DrivenStructure>(linear_structure(*modes_), drive_of(scene), time_step_);
+  const Vector3 place = at_enclosure(modes_->displacement.data()), velocity = at_enclosure(modes_->velocity.data());
+  for (std::size_t k = 0; k < 3; ++k) {
+    initial_displacement_ += place[k] * direction_[k];
+    initial_velocity_ += velocity[k] * direction_[k];
+  }
+}
+
 void EnclosureMotion::prepare_drive(const Scene& scene) {
   kind_ = Kind::driven;
   const auto only = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value); };
-  Drive drive;
-  drive.frequency =
-      scene.excitation.kind == ExcitationKind::base ? scene.excitation.frequency : highest_frequency(scene.excitation);
-  drive.base = base_amplitude(scene);
-  drive.signal = make_force_signal(scene);
-  if (is_motion_table(scene.excitation)) drive.base_motion = make_motion(scene.excitation);
   driven_ = std::make_shared<const DrivenStructure>(
-      LinearStructure{only(mass_), only(damping_), only(stiffness_), only(1.0), only(1.0)}, std::move(drive),
+      LinearStructure{only(mass_), only(damping_), only(stiffness_), only(1.0), only(1.0)}, drive_of(scene),
       time_step_);
 }
 
@@ -130,7 +152,7 @@ double EnclosureMotion::initial_displacement() const noexcept {
   return initial_displacement_;
 }
 
-EnclosureState EnclosureMotion::start(double reaction) const {
+EnclosureState EnclosureMotion::start(double reaction, const Vector3& wall_force) const {
   switch (kind_) {
   case Kind::still:
     break;
@@ -144,6 +166,13 @@ EnclosureState EnclosureMotion::start(double reaction) const {
     for (std::int64_t k = 1; k <= driven_->pieces_per_half(); ++k) driven_->go_back(state, -k, held);
     return {state(0), state(1)};
   }
+  case Kind::modes: {
+    const auto now = initial_state().modes;
+    DrivenStructure::State state = Eigen::Map<const Eigen::VectorXd>(now.data(), static_cast<Eigen::Index>(now.size()));
+    const Eigen::VectorXd held = Eigen::Vector3d(wall_force[0], wall_force[1], wall_force[2]);
+    for (std::int64_t k = 1; k <= driven_->pieces_per_half(); ++k) driven_->go_back(state, -k, held);
+    return {0.0, 0.0, {state.begin(), state.end()}};
+  }
   case Kind::structure: {
     const double scale = time_step_ * time_step_ / mass_;
     const std::array<double, 5> y{initial_displacement_, initial_velocity_ * time_step_, 0.0, force_ * scale,
@@ -155,9 +184,89 @@ EnclosureState EnclosureMotion::start(double reaction) const {
   return {};
 }
 
-EnclosureStep EnclosureMotion::advance(EnclosureState& state, std::int64_t step_number, double reaction) const {
+EnclosureStep EnclosureMotion::advance(EnclosureState& state, std::int64_t step_number, double reaction,
+                                       const Vector3& wall_force) const {
+  if (kind_ == Kind::modes) return advance_modes(state, step_number, wall_force);
+  EnclosureStep step = advance_along(state, step_number, reaction);
+  for (std::size_t k = 0; k < 3; ++k) {
+    step.place[k] = step.displacement * direction_[k];
+    step.velocity_change[k] = (step.velocity_after - step.velocity_before) * direction_[k];
+    step.mean_velocity[k] = 0.5 * (step.velocity_after + step.velocity_before) * direction_[k];
+  }
+  return step;
+}
+
+EnclosureState EnclosureMotion::initial_state() const {
+  if (kind_ != Kind::modes) return {initial_displacement_, initial_velocity_};
+  EnclosureState state;
+  state.modes = modes_->displacement;
+  state.modes.insert(state.modes.end(), modes_->velocity.begin(), modes_->velocity.end());
+  return state;
+}
+
+Vector3 EnclosureMotion::at_enclosure(const double* coordinates) const {
+  Vector3 sum{};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < modes_->size; ++i) sum[k] += modes_->attachment[k * modes_->size + i] * coordinates[i];
+  return sum;
+}
+
+Vector3 EnclosureMotion::velocity_of(const EnclosureState& state) const {
+  if (kind_ == Kind::modes) return at_enclosure(state.modes.data() + modes_->size);
+  return {state.velocity * direction_[0], state.velocity * direction_[1], state.velocity * direction_[2]};
+}
+
+Vector3 EnclosureMotion::velocity_change(const EnclosureState& from, const EnclosureState& to) const {
+  if (kind_ == Kind::modes) {
+    const Vector3 a = velocity_of(from), b = velocity_of(to);
+    return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  }
+  const double change = to.velocity - from.velocity;
+  return {change * direction_[0], change * direction_[1], change * direction_[2]};
+}
+
+EnclosureStep EnclosureMotion::advance_modes(EnclosureState& state, std::int64_t step_number,
+                                             const Vector3& wall_force) const {
+  const std::int64_t pieces = driven_->pieces_per_half(), middle = 2 * pieces * step_number;
+  const auto size = static_cast<Eigen::Index>(state.modes.size());
+  const Eigen::VectorXd held = Eigen::Vector3d(wall_force[0], wall_force[1], wall_force[2]);
+  DrivenStructure::State now = Eigen::Map<const Eigen::VectorXd>(state.modes.data(), size);
+  const auto along = [&](const Vector3& a) {
+    return a[0] * direction_[0] + a[1] * direction_[1] + a[2] * direction_[2];
+  };
+  EnclosureStep step;
+  const Vector3 before = velocity_of(state);
+  const auto over = [&](std::int64_t first) {
+    for (std::int64_t piece = first; piece < first + pieces; ++piece) {
+      const DrivenWork done = driven_->advance(now, piece, held);
+      step.work_in += done.work_in;
+      step.damping_loss += done.loss;
+    }
+  };
+  over(middle - pieces);
+  step.work_in_first_half = step.work_in;
+  step.damping_loss_first_half = step.damping_loss;
+  step.place = at_enclosure(now.data());
+  step.displacement = along(step.place);
+  step.velocity = along(at_enclosure(now.data() + modes_->size));
+  step.excitation = driven_->excitation(middle);
+  step.stored = driven_->stored(now, middle);
+  over(middle);
+  Eigen::Map<Eigen::VectorXd>(state.modes.data(), size) = now;
+  const Vector3 after = velocity_of(state);
+  for (std::size_t k = 0; k < 3; ++k) {
+    step.velocity_change[k] = after[k] - before[k];
+    step.mean_velocity[k] = 0.5 * (after[k] + before[k]);
+  }
+  step.velocity_before = along(before);
+  step.velocity_after = along(after);
+  return step;
+}
+
+EnclosureStep EnclosureMotion::advance_along(EnclosureState& state, std::int64_t step_number, double reaction) const {
   switch (kind_) {
   case Kind::still:
+  case Kind::modes:
     break;
   case Kind::prescribed:
     return advance_prescribed(state, step_number, reaction);
@@ -277,7 +386,7 @@ EnclosureStep EnclosureMotion::advance_driven(EnclosureState& state, std::int64_
   step.excitation = driven_->excitation(middle);
   step.stored = driven_->stored(now, middle);
   over(middle);
-  state = {now(0), now(1)};
+  state = {now(0), now(1), {}};
   step.velocity_after = state.velocity;
   return step;
 }

@@ -3,6 +3,7 @@
 #include "solver/enclosure_motion.hpp"
 #include "solver/excitation_signal.hpp"
 #include "solver/measures.hpp"
+#include "solver/several_modes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,8 +60,9 @@ double rate_of_motion(const Scene& scene) {
   if (is_motion_table(e)) // four rows make a wave
     for (std::size_t k = 0; k + 1 < e.times.size(); ++k) rate = std::max(rate, 0.25 / (e.times[k + 1] - e.times[k]));
   if (scene.structure) {
-    rate = std::max(rate, std::sqrt(scene.structure->stiffness / scene.structure->mass) / (2.0 * pi));
-    rate = std::max(rate, scene.structure->damping / (4.0 * scene.structure->mass));
+    const Oscillator fastest = fastest_oscillator(*scene.structure);
+    rate = std::max(rate, std::sqrt(fastest.stiffness / fastest.mass) / (2.0 * pi));
+    rate = std::max(rate, fastest.damping / (4.0 * fastest.mass));
   }
   return rate;
 }
@@ -79,6 +81,16 @@ EnclosureSpeed bare_enclosure_speed(const Scene& scene) {
   const EnclosureMotion motion(scene, looked_at / looks);
   EnclosureState state = motion.start(0.0);
   EnclosureSpeed speed{std::abs(motion.initial_velocity()), 0.0};
+  if (motion.has_several_modes()) { // looked at as long as a run of one mode is, and not beyond
+    const Vector3 first = motion.velocity_of(motion.initial_state());
+    speed.largest = norm(first);
+    for (std::int64_t n = 0; n <= static_cast<std::int64_t>(looks); ++n) {
+      const Vector3 v = motion.advance(state, n, 0.0).mean_velocity;
+      speed.largest = std::max(speed.largest, norm(v));
+      speed.largest_change = std::max(speed.largest_change, norm({v[0] - first[0], v[1] - first[1], v[2] - first[2]}));
+    }
+    return speed;
+  }
   for (std::int64_t n = 0; n <= static_cast<std::int64_t>(looks); ++n) {
     const double velocity = motion.advance(state, n, 0.0).velocity;
     speed.largest = std::max(speed.largest, std::abs(velocity));
@@ -101,18 +113,16 @@ struct FirstSpeed {
 
 FirstSpeed first_speed(const Scene& scene) {
   const EnclosureMotion motion(scene, 1.0); // only for how the enclosure starts
-  const Vector3& direction = motion.direction();
-  const double enclosure = motion.initial_velocity();
+  const Vector3 enclosure = motion.velocity_of(motion.initial_state());
   FirstSpeed speed;
   for (const Population& population : scene.populations) {
     if (population.count == 0) continue;
     if (population.velocities.empty()) {
       speed.laboratory = std::max(speed.laboratory, population.speed);
-      speed.relative = std::max(speed.relative, population.speed + std::abs(enclosure));
+      speed.relative = std::max(speed.relative, population.speed + norm(enclosure));
     }
     for (const Vector3& v : population.velocities) {
-      const Vector3 relative{v[0] - enclosure * direction[0], v[1] - enclosure * direction[1],
-                             v[2] - enclosure * direction[2]};
+      const Vector3 relative{v[0] - enclosure[0], v[1] - enclosure[1], v[2] - enclosure[2]};
       speed.laboratory = std::max(speed.laboratory, norm(v));
       speed.relative = std::max(speed.relative, norm(relative));
     }

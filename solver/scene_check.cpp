@@ -1,6 +1,8 @@
 #include "solver/scene_check.hpp"
 
+#include "solver/excitation_signal.hpp"
 #include "solver/measures.hpp"
+#include "solver/several_modes.hpp"
 
 #include <fmt/format.h>
 #include <limits>
@@ -275,9 +277,22 @@ void check_excitation(Faults& faults, const Scene& scene) {
 void check_motion(Faults& faults, const Scene& scene) {
   if (scene.structure) {
     const Structure& s = *scene.structure;
-    faults.positive("structure.mass", s.mass);
-    faults.not_negative("structure.stiffness", s.stiffness);
-    faults.not_negative("structure.damping", s.damping);
+    if (s.modes.size == 0) {
+      faults.positive("structure.mass", s.mass);
+      faults.not_negative("structure.stiffness", s.stiffness);
+      faults.not_negative("structure.damping", s.damping);
+    } else {
+      for (const MatrixFault& fault : faults_of(s.modes))
+        faults.add("structure.modes." + fault.key, "", fault.message, fault.allowed);
+      const Excitation& e = scene.excitation;
+      if (e.kind == ExcitationKind::base || is_motion_table(e))
+        faults.add("excitation.kind", name(e.kind),
+                   "a foundation in motion is for a structure of one degree of freedom",
+                   "a force; or a structure of mass, stiffness and damping");
+      if (e.static_deflection)
+        faults.add("excitation.static_deflection", fmt::format("{:g}", *e.static_deflection),
+                   "a structure of several modes has no one stiffness", "force, in N");
+    }
     faults.unit("structure.direction", s.direction);
     faults.finite("structure.displacement", s.displacement);
     faults.finite("structure.velocity", s.velocity);

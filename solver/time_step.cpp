@@ -4,6 +4,7 @@
 #include "solver/excitation_signal.hpp"
 #include "solver/impact_speed.hpp"
 #include "solver/measures.hpp"
+#include "solver/several_modes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -75,11 +76,14 @@ double pushing_area(const Enclosure& enclosure, const Vector3& direction) {
 /// its granules gets the small step that it needs, and a heavy one loses nothing.
 double effective_mass_at_wall(const Scene& scene, const GranuleClass& granule, std::size_t granules) {
   if (!scene.structure) return granule.mass;
-  const double fit = pushing_area(scene.enclosure, scene.structure->direction) /
-                     (2.0 * std::sqrt(3.0) * granule.radius * granule.radius);
+  double area = pushing_area(scene.enclosure, scene.structure->direction);
+  if (has_several_modes(scene)) // in whatever direction most walls push
+    for (const Vector3& axis : {Vector3{1.0, 0.0, 0.0}, Vector3{0.0, 1.0, 0.0}, Vector3{0.0, 0.0, 1.0}})
+      area = std::max(area, pushing_area(scene.enclosure, axis));
+  const double fit = area / (2.0 * std::sqrt(3.0) * granule.radius * granule.radius);
   // Even a wall that only slides past carries the one contact that is there.
   const double sharing = std::max(1.0, std::min(fit, static_cast<double>(granules)));
-  return 1.0 / (1.0 / granule.mass + sharing / scene.structure->mass);
+  return 1.0 / (1.0 / granule.mass + sharing / fastest_oscillator(*scene.structure).mass);
 }
 
 struct StiffestContact {
@@ -198,8 +202,8 @@ void step_without_granules(TimeStep& result, const Scene& scene, const Bound& st
     bound(1.0 / scene.excitation.frequency, "forcing");
   if (const double highest = highest_frequency(scene.excitation); highest > 0.0)
     bound(1.0 / highest, "shortest forcing");
-  if (scene.structure && scene.structure->stiffness > 0.0)
-    bound(2.0 * pi * std::sqrt(scene.structure->mass / scene.structure->stiffness), "natural");
+  const Oscillator fastest = scene.structure ? fastest_oscillator(*scene.structure) : Oscillator{};
+  if (fastest.stiffness > 0.0) bound(2.0 * pi * std::sqrt(fastest.mass / fastest.stiffness), "natural");
   if (structure.step < longest) {
     longest = structure.step;
     result.reason = structure.reason;
@@ -248,8 +252,9 @@ TimeStep step_over(double per_contact, TimeStep result, const Scene& scene, cons
   bound(stable, structure.step, structure.reason);
   bound(chosen, structure.step, structure.reason);
   // The reaction is held over a step: steps near half the structure's own period would resonate with the kicks.
-  if (scene.structure && scene.structure->stiffness > 0.0) {
-    const double period = 2.0 * pi * std::sqrt(scene.structure->mass / scene.structure->stiffness);
+  const Oscillator fastest = scene.structure ? fastest_oscillator(*scene.structure) : Oscillator{};
+  if (fastest.stiffness > 0.0) {
+    const double period = 2.0 * pi * std::sqrt(fastest.mass / fastest.stiffness);
     bound(stable, period / 4.0, "the structure's natural period wants four steps at least");
     bound(chosen, period / 8.0,
           fmt::format("an eighth of the structure's natural period, {:.4g} s, which is stricter than T_c", period));
@@ -293,7 +298,7 @@ Bound bound_by_structure(const Scene& scene) {
   const auto bound = [&structure](double step, const char* reason) {
     if (step < structure.step) structure = {step, reason};
   };
-  const Structure& s = *scene.structure;
+  const Oscillator s = fastest_oscillator(*scene.structure);
   if (s.damping > 0.0) bound(4.0 * s.mass / s.damping, "four times the structure's decay time, mass over damping");
   const Excitation& e = scene.excitation;
   if (const double highest = highest_frequency(e); highest > 0.0) {

@@ -1,11 +1,14 @@
-// Excitations of every kind as scenes have them, and tables in files of their own.
+// Excitations of every kind and structures of several modes as scenes have them, and what they have in files.
 #include "io/scene_file.hpp"
 #include "tests/io/io_support.hpp"
 
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace grandamp;
@@ -95,4 +98,70 @@ TEST_CASE("tables of forces and motions are read beside their scene, and bad one
   CHECK_THROWS_WITH_AS(read_scene_text(on_a_structure + "[excitation]\nkind = \"table\"\nfile = \"none.csv\"\n",
                                        (folder / "scene.toml").string()),
                        doctest::Contains("cannot be read: no such file"), FileError);
+}
+
+TEST_CASE("structures of several modes are read, from the scene or from a file of matrices") {
+  const std::string head = least_scene + "[structure]\n";
+  const Structure two =
+      read_scene_text(
+          head + "direction = [1, 0, 0]\nmodes = [{mass = 2, frequency = 10, damping_ratio = 0.01, shape = [1, "
+                 "0, 0.5]}, {mass = 1, stiffness = 3, damping = 0.1, shape = [0, 1, 0], force_shape = 0.7, "
+                 "displacement = 1e-3, velocity = 2}]\n",
+          "modes.toml")
+          .scene.structure.value();
+  const double stiffness = 2.0 * 400.0 * std::numbers::pi * std::numbers::pi;
+  REQUIRE(two.modes.size == 2);
+  CHECK(two.modes.mass == std::vector<double>{2.0, 0.0, 0.0, 1.0});
+  CHECK(two.modes.stiffness[0] == doctest::Approx(stiffness));
+  CHECK(two.modes.stiffness[3] == 3.0);
+  CHECK(two.modes.damping[0] == doctest::Approx(0.02 * std::sqrt(2.0 * stiffness)));
+  CHECK(two.modes.attachment == std::vector<double>{1.0, 0.0, 0.0, 1.0, 0.5, 0.0});
+  CHECK(two.modes.force == std::vector<double>{1.0, 0.7});
+  CHECK(two.modes.displacement == std::vector<double>{0.0, 1e-3});
+  CHECK(two.modes.velocity == std::vector<double>{0.0, 2.0});
+
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& matrices) {
+    test::write_content(folder / "model.csv", matrices);
+    return read_scene_text(head + "matrices = \"model.csv\"\n", (folder / "scene.toml").string());
+  };
+  const SceneDocument document =
+      read("mass,1,0\nmass,0,2\nstiffness,5,-1\nstiffness,-1,4\nx,0,1\nz,1,0.5\nforce,1,0\n");
+  const SeveralModes& modes = document.scene.structure->modes;
+  CHECK(modes.size == 2);
+  CHECK(modes.mass == std::vector<double>{1.0, 0.0, 0.0, 2.0});
+  CHECK(modes.stiffness == std::vector<double>{5.0, -1.0, -1.0, 4.0});
+  CHECK(modes.damping == std::vector<double>(4, 0.0));
+  CHECK(modes.attachment == std::vector<double>{0.0, 1.0, 0.0, 0.0, 1.0, 0.5});
+  CHECK(modes.force == std::vector<double>{1.0, 0.0});
+  CHECK(document.text.find((folder / "model.csv").string()) != std::string::npos);
+  // Without a row of its own the force acts on the enclosure, along the direction (z).
+  CHECK(read("mass,1,0\nmass,0,2\nstiffness,5,-1\nstiffness,-1,4\nz,1,0.5\n").scene.structure->modes.force ==
+        std::vector<double>{1.0, 0.5});
+
+  const auto message_of = [&](const std::string& matrices) {
+    try {
+      read(matrices);
+    } catch (const SceneError& error) {
+      return format_problems("scene.toml", error.problems());
+    }
+    return std::string("(no error)");
+  };
+  for (const auto& [matrices, part] : std::vector<std::pair<std::string, std::string>>{
+           {"", "no rows"},
+           {"mess,1\n", "line 1: 'mess': unknown row; allowed: mass, damping"},
+           {"mass,1,0\nmass,0\n", "line 2: 1 numbers, where the first row has 2"},
+           {"mass,1,x\n", "line 1: 'x': not a finite number"},
+           {"mass,1,0\nstiffness,1,0\nstiffness,0,1\nz,1,0\n", "1 rows of mass; allowed: 2"},
+           {"mass,1\nmass,1\n", "line 2: more than 1 rows of mass"},
+           {"mass,0\nstiffness,1\nz,1\n", "mass: some motion has no mass"},
+           {"mass,1\nstiffness,-1\nz,1\n", "stiffness: some motion would gain energy"},
+           {"mass,1\nstiffness,1\n", "attachment: the enclosure does not move"},
+           {"mass,2,1\nmass,0,2\nstiffness,1,0\nstiffness,0,1\nz,1,0\n", "mass: not symmetric"}}) {
+    CAPTURE(matrices);
+    const std::string message = message_of(matrices);
+    CAPTURE(message);
+    CHECK(message.find(part) != std::string::npos);
+    CHECK(message.find("structure.matrices = 'model.csv'") != std::string::npos);
+  }
 }

@@ -307,6 +307,26 @@ const std::vector<BadScene> bad_scenes{
      {"excitation.amplitude = 1: does not apply: the kind is \"harmonic\""}},
     {"frequency = 15.91", "frequency = 0", {"bad.toml:35: excitation.frequency = 0: out of range"}},
     {"frequency = 15.91\n", "", {"excitation.frequency: missing"}},
+    // Structures of several modes.
+    {"mass = 0.1\nstiffness = 1000.0\ndamping = 0.2\n",
+     "mass = 0.1\nmodes = [{mass = 1, frequency = 10, shape = [0, 0, 1]}, {mass = 2, frequency = 20, shape = [1, 0, "
+     "0]}]\n",
+     {"bad.toml:28: structure.mass = 0.1: does not apply: modes are given",
+      "excitation.static_deflection = 0.0005: a structure of several modes has no one stiffness; allowed: force, in "
+      "N"}},
+    {"mass = 0.1\nstiffness = 1000.0\ndamping = 0.2\n",
+     "modes = [{mass = 0, damping_ratio = -1}, {mass = 1, stiffness = 2, frequency = 1, shape = [0, 0]}]\n",
+     {"structure.modes.0.mass = 0: out of range", "structure.modes.0.frequency: missing",
+      "structure.modes.0.damping_ratio = -1: out of range", "structure.modes.0.shape: missing: how the enclosure moves",
+      "structure.modes.1.stiffness = 2: does not apply: frequency is given as well",
+      "structure.modes.1.shape = [0, 0]: not three numbers"}},
+    {"mass = 0.1\nstiffness = 1000.0\ndamping = 0.2\n",
+     "modes = [{mass = 1, frequency = 10, shape = [0, 0, 0]}]\n",
+     {"structure.modes", "the enclosure does not move"}},
+    {"mass = 0.1\nstiffness = 1000.0\ndamping = 0.2\n", "modes = []\n", {"structure.modes = []: no modes"}},
+    {"mass = 0.1\nstiffness = 1000.0\ndamping = 0.2\n",
+     "modes = [{mass = 1, frequency = 10, shape = [0, 0, 1], colour = 3}]\n",
+     {"structure.modes.0.colour = 3: unknown key"}},
     // Time.
     {"duration = 7.0", "duration = -7.0", {"bad.toml:37: time.duration = -7.0: out of range", "above 0"}},
     {"duration = 7.0", "duration = nan", {"time.duration = nan: not a finite number"}},

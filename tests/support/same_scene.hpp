@@ -19,7 +19,9 @@ inline auto values(const ContactConstants& c) {
                   c.tangential_stiffness, c.tangential_damping, c.young, c.poisson);
 }
 inline auto values(const Structure& s) {
-  return std::tie(s.mass, s.stiffness, s.damping, s.direction, s.displacement, s.velocity);
+  return std::tie(s.mass, s.stiffness, s.damping, s.direction, s.displacement, s.velocity, s.modes.size, s.modes.mass,
+                  s.modes.damping, s.modes.stiffness, s.modes.attachment, s.modes.force, s.modes.displacement,
+                  s.modes.velocity);
 }
 inline auto values(const Excitation& e) {
   return std::tie(e.kind, e.static_deflection, e.force, e.frequency, e.amplitude, e.acceleration, e.velocity,
