@@ -3,6 +3,7 @@
 #include "io/profile_report.hpp"
 #include "io/text_file.hpp"
 #include "io/version.hpp"
+#include "solver/several_modes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +20,11 @@ double seconds_since(WallClock::time_point start) {
 
 RecentAmplitude::RecentAmplitude(const Scene& scene) {
   if (!scene.structure) return;
-  period_ = scene.excitation.kind == ExcitationKind::harmonic
+  const Oscillator own = fastest_oscillator(*scene.structure);
+  const ExcitationKind kind = scene.excitation.kind;
+  period_ = kind == ExcitationKind::harmonic || kind == ExcitationKind::base
                 ? 1.0 / scene.excitation.frequency
-                : 2.0 * std::numbers::pi * std::sqrt(scene.structure->mass / scene.structure->stiffness);
+                : 2.0 * std::numbers::pi * std::sqrt(own.mass / own.stiffness);
 }
 
 void RecentAmplitude::add(const Sample& sample) {

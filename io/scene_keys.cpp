@@ -30,10 +30,29 @@ constexpr std::array<std::string_view, 11> contact_pair{
     "between",        "stiffness", "reference_radius",     "restitution",        "alpha",
     "normal_damping", "friction",  "tangential_stiffness", "tangential_damping", "young",
     "poisson"};
-constexpr std::array<std::string_view, 6> structure{"mass",      "stiffness",    "damping",
-                                                    "direction", "displacement", "velocity"};
-constexpr std::array<std::string_view, 7> excitation{"kind",      "static_deflection", "force",    "frequency",
-                                                     "amplitude", "velocity",          "direction"};
+constexpr std::array<std::string_view, 8> structure{"mass",         "stiffness", "damping",  "direction",
+                                                    "displacement", "velocity",  "matrices", "modes"};
+constexpr std::array<std::string_view, 9> modes{"mass",  "frequency",   "stiffness",    "damping_ratio", "damping",
+                                                "shape", "force_shape", "displacement", "velocity"};
+constexpr std::array<std::string_view, 19> excitation{"kind",
+                                                      "static_deflection",
+                                                      "force",
+                                                      "frequency",
+                                                      "amplitude",
+                                                      "acceleration",
+                                                      "velocity",
+                                                      "direction",
+                                                      "start_frequency",
+                                                      "end_frequency",
+                                                      "sweep",
+                                                      "sweep_duration",
+                                                      "force_rms",
+                                                      "band",
+                                                      "seed",
+                                                      "start",
+                                                      "pulse_duration",
+                                                      "file",
+                                                      "interpolation"};
 constexpr std::array<std::string_view, 7> time{"duration",     "steps_per_contact", "step",     "error",
                                                "impact_speed", "integrator",        "precision"};
 constexpr std::array<std::string_view, 7> verlet{"policy",       "skin",     "cell", "safety",
@@ -46,7 +65,7 @@ struct Table {
   std::string_view header;
   Names keys;
 };
-constexpr std::array<Table, 13> tables{{{"", "the top of the file", root},
+constexpr std::array<Table, 14> tables{{{"", "the top of the file", root},
                                         {"enclosure", "[enclosure]", enclosure},
                                         {"granules", "[[granules]]", granules},
                                         {"packing", "[packing]", packing},
@@ -55,6 +74,7 @@ constexpr std::array<Table, 13> tables{{{"", "the top of the file", root},
                                         {"contact.wall", "[contact.wall]", contact_wall},
                                         {"contact.pair", "[[contact.pair]]", contact_pair},
                                         {"structure", "[structure]", structure},
+                                        {"structure.modes", "[[structure.modes]]", modes},
                                         {"excitation", "[excitation]", excitation},
                                         {"time", "[time]", time},
                                         {"verlet", "[verlet]", verlet},

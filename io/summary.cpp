@@ -1,6 +1,7 @@
 #include "io/summary.hpp"
 
 #include "io/version.hpp"
+#include "solver/several_modes.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -38,6 +39,14 @@ Json structure_json(const RunRecord& record) {
                  {"amplitude", known(response.amplitude)},
                  {"steady", response.steady},
                  {"window", record.plan->window}};
+  if (has_several_modes(record.plan->scene)) {
+    const ModalNumbers modal = modal_numbers(record.plan->scene.structure->modes);
+    structure["direction"] = record.plan->scene.structure->direction;
+    Json& modes = structure["modes"] = Json::array();
+    for (std::size_t k = 0; k < modal.frequency.size(); ++k)
+      modes.push_back({{"frequency", modal.frequency[k]}, {"damping_ratio", modal.damping_ratio[k]}});
+    return structure;
+  }
   if (record.plan->scene.excitation.kind != ExcitationKind::none) return structure;
   Json& cycles = structure["cycles"] = Json::array();
   for (const VibrationCycle& cycle : response.cycles)

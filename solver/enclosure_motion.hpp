@@ -6,20 +6,30 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <vector>
 
 namespace grandamp {
 
-/// What one step of the enclosure gave. "At t_n": the middle of the interval from t_(n-1/2) to t_(n+1/2).
+class DrivenStructure;
+class PiecewisePolynomial;
+
+/// What one step of the enclosure gave. Velocities and displacement are along its direction; of a structure of several
+/// modes, which moves in all three, their components along the direction that the scene names. "At t_n": the middle of
+/// the interval from t_(n-1/2) to t_(n+1/2).
 struct EnclosureStep {
   double velocity_before = 0.0; ///< V at t_(n-1/2), m/s
   double velocity_after = 0.0;  ///< V at t_(n+1/2), m/s
   double displacement = 0.0;    ///< X at t_n, m
   double velocity = 0.0; ///< V at t_n, m/s (a granule's laboratory velocity at t_n takes the mean of before and after)
-  double excitation = 0.0;   ///< F at t_n, N
+  Vector3 place{};       ///< the enclosure's displacement at t_n, m
+  Vector3 velocity_change{}; ///< from t_(n-1/2) to t_(n+1/2), m/s
+  Vector3 mean_velocity{};   ///< of those two, m/s
+  double excitation = 0.0;   ///< F at t_n, N (foundation in motion: K y + c y')
   double work_in = 0.0;      ///< by the excitation over the interval, J (prescribed: by whatever moves the enclosure,
                              ///< against the reaction)
-  double damping_loss = 0.0; ///< c V^2 integrated over the interval, J
-  double stored = 0.0;       ///< M V^2/2 + K X^2/2 at t_n, J
+  double damping_loss = 0.0; ///< c V^2 integrated over the interval (foundation in motion: V - y' for V), J
+  double stored = 0.0;       ///< M V^2/2 + K X^2/2 at t_n (foundation in motion: X - y for X), J
   // The share that falls before t_n: a ledger from t_0 to t_n is the sum of the steps before n, plus the first half of
   // step n, less the first half of step 0 (which lies before t = 0).
   double work_in_first_half = 0.0;
@@ -28,8 +38,9 @@ struct EnclosureStep {
 
 /// The part of an EnclosureMotion that a checkpoint needs.
 struct EnclosureState {
-  double displacement = 0.0; ///< X at t_(n-1/2), m (prescribed motion: unused)
-  double velocity = 0.0;     ///< V at t_(n-1/2), m/s (prescribed motion: of that half step)
+  double displacement = 0.0;   ///< X at t_(n-1/2), m (prescribed motion: unused)
+  double velocity = 0.0;       ///< V at t_(n-1/2), m/s (prescribed motion: of that half step)
+  std::vector<double> modes{}; ///< several modes: q, then q', at t_(n-1/2); the others are then unused
 };
 
 /// Advances the structure by the exact solution of its linear equation over a step, the reaction held constant over the
@@ -46,15 +57,23 @@ public:
   /// Velocity of the enclosure at t = 0 as the scene gives it, m/s.
   double initial_velocity() const noexcept;
   double initial_displacement() const noexcept;
+  /// At t = 0.
+  EnclosureState initial_state() const;
+  Vector3 velocity_of(const EnclosureState& state) const;
+  Vector3 velocity_change(const EnclosureState& from, const EnclosureState& to) const;
+  bool has_several_modes() const noexcept { return kind_ == Kind::modes; }
 
   /// The state at t_(-1/2), from the scene's at t = 0 and the reaction at t = 0 (N): the exact solution backwards.
-  EnclosureState start(double reaction) const;
+  EnclosureState start(double reaction, const Vector3& wall_force = {}) const;
 
-  /// The interval about t_n = step_number * dt; `state` goes from t_(n-1/2) to t_(n+1/2). Nothing else is remembered.
-  EnclosureStep advance(EnclosureState& state, std::int64_t step_number, double reaction) const;
+  /// `wall_force`, on the enclosure in N, is for several modes alone, and `reaction`, its component along the
+  /// direction, for all others. The interval about t_n = step_number * dt; `state` goes from t_(n-1/2) to t_(n+1/2).
+  /// Nothing else is remembered.
+  EnclosureStep advance(EnclosureState& state, std::int64_t step_number, double reaction,
+                        const Vector3& wall_force = {}) const;
 
 private:
-  enum class Kind { still, prescribed, structure };
+  enum class Kind { still, prescribed, table, structure, driven, modes };
 
   /// What the exact solution does to (X, V dt, p, q, r) over an interval, p, q and r being the forces
   /// F0 sin(w t), F0 cos(w t) and R times dt^2 / M: all in metres, so that the numbers are of one kind.
@@ -66,8 +85,17 @@ private:
   };
 
   void prepare_structure(const Scene& scene);
+  void prepare_modes(const Scene& scene);
+  void prepare_drive(const Scene& scene);
+  double mean_table_velocity(std::int64_t step_number) const;
+  void hold_against(double reaction, EnclosureStep& step) const;
   EnclosureStep advance_structure(EnclosureState& state, std::int64_t step_number, double reaction) const;
+  EnclosureStep advance_along(EnclosureState& state, std::int64_t step_number, double reaction) const;
+  EnclosureStep advance_modes(EnclosureState& state, std::int64_t step_number, const Vector3& wall_force) const;
+  Vector3 at_enclosure(const double* coordinates) const;
+  EnclosureStep advance_driven(EnclosureState& state, std::int64_t step_number, double reaction) const;
   EnclosureStep advance_prescribed(EnclosureState& state, std::int64_t step_number, double reaction) const;
+  EnclosureStep advance_table(EnclosureState& state, std::int64_t step_number, double reaction) const;
 
   Kind kind_ = Kind::still;
   Vector3 direction_{1.0, 0.0, 0.0};
@@ -87,6 +115,9 @@ private:
   Propagator whole_;                              ///< from t_(n-1/2) to t_(n+1/2)
   std::array<double, 5> backward_displacement_{}; ///< from t_0 to t_(-1/2)
   std::array<double, 5> backward_velocity_{};
+  std::shared_ptr<const DrivenStructure> driven_; ///< what is no harmonic force
+  std::shared_ptr<const SeveralModes> modes_;
+  std::shared_ptr<const PiecewisePolynomial> table_; ///< the enclosure's own motion, m
 };
 
 } // namespace grandamp

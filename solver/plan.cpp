@@ -4,6 +4,7 @@
 #include "solver/damper_numbers.hpp"
 #include "solver/measures.hpp"
 #include "solver/scene_check.hpp"
+#include "solver/several_modes.hpp"
 #include "solver/time_step.hpp"
 
 #include <fmt/format.h>
@@ -65,8 +66,14 @@ void choose_effects(Plan& plan, const ContactTable& contacts) {
   effect("box", granules && box);
   effect("cylinder", granules && !box);
   effect("structure", scene.structure.has_value());
+  effect("modes", has_several_modes(scene));
   effect("harmonic", scene.excitation.kind == ExcitationKind::harmonic);
   effect("prescribed", scene.excitation.kind == ExcitationKind::prescribed);
+  effect("base", scene.excitation.kind == ExcitationKind::base);
+  effect("chirp", scene.excitation.kind == ExcitationKind::chirp);
+  effect("random", scene.excitation.kind == ExcitationKind::random);
+  effect("impulse", scene.excitation.kind == ExcitationKind::impulse);
+  effect("table", scene.excitation.kind == ExcitationKind::table);
   effect("energy", scene.output.energy);
   effect("audit", granules && scene.verlet.audit > 0);
   effect("verlet", granules && scene.time.integrator == Integrator::verlet);
@@ -125,7 +132,7 @@ void add_notes(Plan& plan) {
          fmt::format(
              "the closing speed of {:.3g} m/s is estimated from the scene; the run watches the speeds that it meets",
              plan.impact_speed));
-  if (scene.structure && scene.structure->stiffness > 0.0) {
+  if (scene.structure && !has_several_modes(scene) && scene.structure->stiffness > 0.0) {
     const Vector3& d = scene.structure->direction;
     const double along = scene.gravity[0] * d[0] + scene.gravity[1] * d[1] + scene.gravity[2] * d[2];
     const double deflection = plan.damper.granule_mass * along / scene.structure->stiffness;
@@ -156,6 +163,10 @@ Plan make_plan(const Scene& scene) {
 
   Plan plan;
   plan.scene = scene;
+  // A run that goes on beyond its end keeps the sweep that it began with.
+  Excitation& excitation = plan.scene.excitation;
+  if (excitation.kind == ExcitationKind::chirp && !excitation.sweep_duration)
+    excitation.sweep_duration = scene.time.duration;
   plan.granules = granule_count(scene);
   const RadiusRange radii = radius_range(scene);
   plan.smallest_radius = radii.smallest;

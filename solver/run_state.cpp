@@ -87,6 +87,10 @@ void check_state(const RunState& s, const Plan& plan) {
   demand_range("step_number", s.step_number, 0, s.steps);
   if (!(s.window[0] >= 0.0 && s.window[0] < s.window[1])) refuse("the window of the statistics is none");
   check_granules(s, plan);
+  demand_length("enclosure/modes", s.enclosure_modes.size(),
+                plan.scene.structure ? 2 * plan.scene.structure->modes.size : 0);
+  for (const double coordinate : s.enclosure_modes)
+    if (!std::isfinite(coordinate)) refuse("enclosure/modes is not finite");
   const bool displacement = plan.scene.verlet.policy == ListPolicy::displacement && s.list_built;
   demand_length("list/built_at", s.built_at.size(), displacement ? 3 * plan.granules : 0);
   if (!(s.skin >= 0.0 && s.skin <= 1e3 * (plan.largest_radius + 1.0))) refuse(fmt::format("list/skin is {} m", s.skin));

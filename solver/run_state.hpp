@@ -73,6 +73,7 @@ struct RunState {
   double candidates_sum = 0.0;
 
   double enclosure_displacement = 0.0;
+  std::vector<double> enclosure_modes;
   double enclosure_velocity = 0.0;
   Ledger ledger;
   GuardStatistics guards;
@@ -177,6 +178,8 @@ template <class State, class Field> void visit_fields(State& s, Field&& field) {
 
   field(FieldInfo{"enclosure/displacement", "m", "half a step before t_n"}, s.enclosure_displacement);
   field(FieldInfo{"enclosure/velocity", "m/s", "half a step before t_n"}, s.enclosure_velocity);
+  field(FieldInfo{"enclosure/modes", "SI", "several modes: coordinates, then their rates, half a step before t_n"},
+        s.enclosure_modes);
 
   field(FieldInfo{"ledger/work_in", "J", "since t = 0, until half a step before t_n"}, s.ledger.work_in);
   field(FieldInfo{"ledger/structural_damping", "J", "likewise"}, s.ledger.structural_damping);

@@ -6,6 +6,7 @@
 #include "solver/pouring.hpp"
 #include "solver/response.hpp"
 #include "solver/run_state.hpp"
+#include "solver/several_modes.hpp"
 #include "solver/stepper.hpp"
 #include "solver/vibration_cycles.hpp"
 
@@ -46,7 +47,7 @@ int chosen_threads(int asked, std::size_t granules) {
 }
 
 double forcing_period(const Excitation& excitation) {
-  const bool periodic = excitation.kind == ExcitationKind::harmonic ||
+  const bool periodic = excitation.kind == ExcitationKind::harmonic || excitation.kind == ExcitationKind::base ||
                         (excitation.kind == ExcitationKind::prescribed && !excitation.velocity);
   return periodic && excitation.frequency > 0.0 ? 1.0 / excitation.frequency : 0.0;
 }
@@ -64,6 +65,7 @@ Placement placed(const Plan& plan, kernels::InstructionSet isa, int threads, con
 
 std::optional<VibrationCycles> cycles_of(const Plan& plan) {
   if (!plan.scene.structure || plan.scene.excitation.kind != ExcitationKind::none) return std::nullopt;
+  if (has_several_modes(plan.scene)) return std::nullopt; // no one mass swings
   return VibrationCycles(plan.scene.structure->mass, plan.time_step);
 }
 
@@ -139,11 +141,16 @@ struct Simulation::State {
     sample.stored.structure = record.enclosure.stored;
     for (std::size_t k = 0; k < 3; ++k)
       sample.stored.gravitational -=
-          plan.scene.gravity[k] * (record.mass_moment[k] + plan.damper.granule_mass * record.enclosure.displacement *
-                                                               stepper.motion().direction()[k]);
+          plan.scene.gravity[k] * (record.mass_moment[k] + granules_moved_by(record.enclosure, k));
     sample.contacts = record.contacts;
     if (plan.scene.output.energy) sample.ledger = record.until;
     return sample;
+  }
+
+  /// Moment of the granules' mass by the enclosure's displacement, kg m.
+  double granules_moved_by(const EnclosureStep& enclosure, std::size_t k) const {
+    if (has_several_modes(plan.scene)) return plan.damper.granule_mass * enclosure.place[k];
+    return plan.damper.granule_mass * enclosure.displacement * stepper.motion().direction()[k];
   }
 
   void note(std::int64_t step_number, const StepRecord& record) {
@@ -229,8 +236,7 @@ GranuleTable Simulation::granules() {
   RowArray<kernels::MotionRow> mean;
   const StepRecord record = state_->stepper.trial(false, &mean);
   const Granules& rows = state_->stepper.granules();
-  const Vector3& direction = state_->stepper.motion().direction();
-  const double frame = 0.5 * (record.enclosure.velocity_before + record.enclosure.velocity_after);
+  const Vector3& frame = record.enclosure.mean_velocity;
   GranuleTable table;
   const std::uint32_t count = rows.count();
   table.position.resize(count);
@@ -243,7 +249,7 @@ GranuleTable Simulation::granules() {
     const kernels::PositionRow& p = rows.position[row];
     table.position[id] = {p.x, p.y, p.z};
     for (std::size_t k = 0; k < 3; ++k) {
-      table.velocity[id][k] = mean[row].velocity[k] + frame * direction[k];
+      table.velocity[id][k] = mean[row].velocity[k] + frame[k];
       table.spin[id][k] = mean[row].surface_spin[k] / p.radius;
     }
     table.radius[id] = p.radius;

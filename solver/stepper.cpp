@@ -105,15 +105,12 @@ StepRecord Stepper::advance(bool energies) {
   }
   const double reaction = wall_forces(kernels);
   EnclosureStep enclosure;
-  timed(profile_, Phase::structure, 0, [&] { enclosure = motion_.advance(enclosure_, step_number_, reaction); });
-  const Vector3& direction = motion_.direction();
-  Vector3 kick = plan_.scene.gravity, frame_velocity{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    kick[k] = kick[k] * time_step_ - (enclosure.velocity_after - enclosure.velocity_before) * direction[k];
-    frame_velocity[k] = 0.5 * (enclosure.velocity_after + enclosure.velocity_before) * direction[k];
-  }
+  timed(profile_, Phase::structure, 0,
+        [&] { enclosure = motion_.advance(enclosure_, step_number_, reaction, wall_force()); });
+  Vector3 kick = plan_.scene.gravity;
+  for (std::size_t k = 0; k < 3; ++k) kick[k] = kick[k] * time_step_ - enclosure.velocity_change[k];
   boundary_forces(kernels);
-  sweep(kernels, kick, frame_velocity);
+  sweep(kernels, kick, enclosure.mean_velocity);
   StepRecord record = collect(reaction, enclosure);
   record.until = ledger_at(record);
   return record;
@@ -124,10 +121,8 @@ double Stepper::wall_forces(const Kernels& kernels) {
   shared.granules = granules_.arrays();
   shared.law = wall_laws_.front();
   shared.laws = wall_laws_.data();
-  shared.enclosure_inverse_mass = enclosure_inverse_mass_;
   shared.friction_inverse_mass = friction_inverse_mass_;
   shared.friction_cap = friction_cap_;
-  std::copy_n(motion_.direction().begin(), 3, shared.direction);
   team_.each(list_.segments().size(), [&](std::size_t s) {
     Segment& segment = list_.segments()[s];
     kernels::WallArguments a = shared;
@@ -136,6 +131,8 @@ double Stepper::wall_forces(const Kernels& kernels) {
       for (std::size_t w = 0; w < walls_.size(); ++w) {
         if (segment.walls[w].count == 0) continue;
         a.surface = walls_[w].surface;
+        a.enclosure_inverse_mass = wall_mobility_[w].inverse_mass;
+        std::copy_n(wall_mobility_[w].direction.begin(), 3, a.direction);
         a.list = segment.walls[w].granules.data();
         a.count = segment.walls[w].count;
         if (remembers()) a.springs = spring_arguments(s, springs_.of(s).walls[w], 0, wall_spring_laws_);
@@ -147,6 +144,13 @@ double Stepper::wall_forces(const Kernels& kernels) {
   for (const SegmentResult& result : results_)
     for (std::size_t k = 0; k < 3; ++k) reaction -= result.walls.force[k] * motion_.direction()[k];
   return reaction;
+}
+
+Vector3 Stepper::wall_force() const {
+  Vector3 force{};
+  for (const SegmentResult& result : results_)
+    for (std::size_t k = 0; k < 3; ++k) force[k] -= result.walls.force[k];
+  return force;
 }
 
 double Stepper::approach_share() const {
@@ -320,10 +324,11 @@ void Stepper::rebuild() {
 
 double Stepper::largest_laboratory_speed() const {
   double largest = 0.0;
+  const Vector3 frame = motion_.velocity_of(enclosure_);
   for (std::uint32_t i = 0; i < granules_.count(); ++i) {
     double square = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double v = granules_.motion[i].velocity[k] + enclosure_.velocity * motion_.direction()[k];
+      const double v = granules_.motion[i].velocity[k] + frame[k];
       square += v * v;
     }
     largest = std::max(largest, square);

@@ -89,6 +89,7 @@ private:
   void restore_springs(const RunState& state);
   std::vector<double> constants() const;
   void choose_kernels();
+  void choose_mobility();
   void take_half_step_back();
   const Kernels& kernels_for(bool energies) const;
 
@@ -97,6 +98,7 @@ private:
   double largest_laboratory_speed() const;
   void audit_if_due();
   double wall_forces(const Kernels& kernels); ///< the reaction along the enclosure's direction, N
+  Vector3 wall_force() const;                 ///< on the enclosure, N, of the walls' kernels just run
   void boundary_forces(const Kernels& kernels);
   void sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity);
   StepRecord collect(double reaction, const EnclosureStep& enclosure);
@@ -126,7 +128,13 @@ private:
   std::vector<kernels::LawRow> pair_laws_, wall_laws_;
   std::vector<kernels::SpringLawRow> pair_spring_laws_, wall_spring_laws_;
   double friction_cap_ = 0.0;
-  double enclosure_inverse_mass_ = 0.0;
+  double enclosure_inverse_mass_ = 0.0; ///< the largest that the structure shows, 1/kg
+  /// By wall: the line along which the structure yields, and how much, 1/kg.
+  struct Mobility {
+    Vector3 direction{};
+    double inverse_mass = 0.0;
+  };
+  std::vector<Mobility> wall_mobility_;
   double friction_inverse_mass_ = 0.0;
   double closing_limit_ = 0.0;
   bool touch_ahead_ = false; ///< the rows exceed the caches

@@ -1,6 +1,7 @@
 // How a Stepper comes to its first step.
 #include "solver/guards.hpp"
 #include "solver/measures.hpp"
+#include "solver/several_modes.hpp"
 #include "solver/stepper.hpp"
 
 #include <algorithm>
@@ -107,10 +108,11 @@ Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa,
   const bool verlet = plan_.scene.time.integrator == Integrator::verlet;
   friction_cap_ = (verlet ? verlet_share : 1.0) * (contact_effects_.rotates() ? rolling_mass_share : 1.0) / time_step_;
   if (plan_.scene.structure && plan_.granules > 0) {
-    enclosure_inverse_mass_ = 1.0 / plan_.scene.structure->mass;
+    enclosure_inverse_mass_ = 1.0 / fastest_oscillator(*plan_.scene.structure).mass;
     // Many walls' contacts brake the same structure at once: each is allowed its share of that mass.
     friction_inverse_mass_ = enclosure_inverse_mass_ * most_wall_contacts(plan_);
   }
+  choose_mobility();
   motion_effects_.integration = verlet ? kernels::Integration::verlet : kernels::Integration::leapfrog;
   motion_effects_.rubbing = contact_effects_.rotates()  ? kernels::Rubbing::with_rotation
                             : contact_effects_.counts() ? kernels::Rubbing::without_rotation
@@ -133,6 +135,36 @@ Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa,
   touch_ahead_ = plan_.granules * (sizeof(PositionRow) + sizeof(MotionRow) + sizeof(kernels::ForceRow)) > 1U << 20;
 }
 
+/// One degree of freedom yields along its direction. Several yield otherwise in each direction: n . B n along the
+/// normal n of a plane, B being the mobility of the enclosure; on a cylinder's side, where n turns, along the line that
+/// yields most.
+void Stepper::choose_mobility() {
+  wall_mobility_.assign(walls_.size(), {motion_.direction(), enclosure_inverse_mass_});
+  if (enclosure_inverse_mass_ == 0.0 || !has_several_modes(plan_.scene)) return;
+  const std::array<double, 9> b = modal_numbers(plan_.scene.structure->modes).mobility;
+  const auto yields = [&b](const Vector3& n) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < 3; ++k) sum += n[i] * b[3 * i + k] * n[k];
+    return sum;
+  };
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const kernels::WallSurface& surface = walls_[w].surface;
+    if (!walls_[w].side) {
+      const Vector3 normal{surface.normal[0], surface.normal[1], surface.normal[2]};
+      wall_mobility_[w] = {normal, std::max(0.0, yields(normal))};
+      continue;
+    }
+    wall_mobility_[w].inverse_mass = 0.0;
+    const std::size_t u = surface.across[0] != 0.0 ? 0 : 1, v = surface.across[2] != 0.0 ? 2 : 1;
+    const double angle = 0.5 * std::atan2(2.0 * b[3 * u + v], b[4 * u] - b[4 * v]);
+    Vector3 line{};
+    line[u] = std::cos(angle);
+    line[v] = std::sin(angle);
+    wall_mobility_[w] = {line, std::max(0.0, yields(line))};
+  }
+}
+
 void Stepper::choose_kernels() {
   const bool ledger = plan_.scene.output.energy;
   const auto chosen = [&](Observation observation) {
@@ -151,14 +183,14 @@ void Stepper::place(const Placement& start) {
   granules_ = Granules(count, {.predicted = motion_effects_.integration == kernels::Integration::verlet,
                                .ledger = plan_.scene.output.energy,
                                .shares = contact_effects_.counts()});
-  const double frame = motion_.initial_velocity();
+  const Vector3 frame = motion_.velocity_of(motion_.initial_state());
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3 &p = start.position[i], &v = start.velocity[i], &w = start.spin[i];
     const double r = start.radius[i];
     granules_.position[i] = {p[0], p[1], p[2], r};
     MotionRow& motion = granules_.motion[i];
     for (std::size_t k = 0; k < 3; ++k) {
-      motion.velocity[k] = v[k] - frame * motion_.direction()[k];
+      motion.velocity[k] = v[k] - frame[k];
       motion.surface_spin[k] = r * w[k];
     }
     motion.inverse_mass = 1.0 / start.mass[i];
@@ -172,15 +204,16 @@ void Stepper::place(const Placement& start) {
 
 void Stepper::take_half_step_back() {
   // Forces at t = 0, with the velocities of t = 0, through one kick that is then halved and turned round.
-  enclosure_ = {motion_.initial_displacement(), motion_.initial_velocity()};
+  const EnclosureState at_start = motion_.initial_state();
+  enclosure_ = at_start;
   rebuild_if_due();
   if (contact_effects_.counts()) trial(false, nullptr, true);
   results_.assign(list_.segments().size(), {});
   const Kernels& kernels = kernels_for(false);
   const SpringMemory springs = springs_;
   const double reaction = wall_forces(kernels);
-  enclosure_ = motion_.start(reaction);
-  const double frame_change = enclosure_.velocity - motion_.initial_velocity();
+  enclosure_ = motion_.start(reaction, wall_force());
+  const Vector3 frame_change = motion_.velocity_change(at_start, enclosure_);
   const std::uint32_t count = granules_.count();
   RowArray<PositionRow> position(granules_.position.size());
   RowArray<MotionRow> motion(granules_.motion.size()), predicted(granules_.predicted.size());
@@ -196,7 +229,7 @@ void Stepper::take_half_step_back() {
   for (std::uint32_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       MotionRow &before = motion[i], &after = granules_.motion[i];
-      before.velocity[k] -= 0.5 * (after.velocity[k] - before.velocity[k]) + frame_change * motion_.direction()[k];
+      before.velocity[k] -= 0.5 * (after.velocity[k] - before.velocity[k]) + frame_change[k];
       before.surface_spin[k] -= 0.5 * (after.surface_spin[k] - before.surface_spin[k]);
     }
   granules_.motion = std::move(motion);

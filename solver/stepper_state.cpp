@@ -47,10 +47,24 @@ std::vector<double> Stepper::constants() const {
     for (const kernels::SpringLawRow& law : *laws) values.insert(values.end(), {law.stiffness, law.damping});
   // The enclosure's own motion from a state of its own, at steps far apart: sines and cosines of another mathematics
   // library, or exponentials of another Eigen, show here.
-  EnclosureState state{motion_.initial_displacement() + 1e-3, motion_.initial_velocity() + 1e-2};
+  EnclosureState state = motion_.initial_state();
+  state.displacement += 1e-3;
+  state.velocity += 1e-2;
+  for (double& coordinate : state.modes) coordinate += 1e-3;
   for (std::int64_t k = 0; k < 64; ++k) {
-    const EnclosureStep step = motion_.advance(state, 7919 * k, 0.25);
+    const EnclosureStep step = motion_.advance(state, 7919 * k, 0.25, {0.25, 0.125, -0.5});
     values.insert(values.end(), {step.displacement, step.velocity, step.velocity_after, step.excitation, step.work_in});
+  }
+  // A table is read anew when a run goes on, and may be another by then.
+  const Excitation& excitation = plan_.scene.excitation;
+  if (excitation.kind == ExcitationKind::table) {
+    std::vector<double> sums(3, 0.0);
+    for (std::size_t k = 0; k < excitation.times.size(); ++k) {
+      sums[0] += excitation.times[k];
+      sums[1] += excitation.values[k];
+      sums[2] += static_cast<double>(k % 1009) * excitation.values[k];
+    }
+    values.insert(values.end(), sums.begin(), sums.end());
   }
   return values;
 }
@@ -108,6 +122,7 @@ void Stepper::save(RunState& s) const {
 
   s.enclosure_displacement = enclosure_.displacement;
   s.enclosure_velocity = enclosure_.velocity;
+  s.enclosure_modes = enclosure_.modes;
   s.ledger = ledger_;
   s.guards = guards_;
   s.warned_overlap = warned_overlap_;
@@ -130,7 +145,7 @@ Stepper::Stepper(const Plan& plan, const RunState& s, kernels::InstructionSet is
   step_number_ = s.step_number;
   restore_granules(s);
   restore_list(s);
-  enclosure_ = {s.enclosure_displacement, s.enclosure_velocity};
+  enclosure_ = {s.enclosure_displacement, s.enclosure_velocity, s.enclosure_modes};
   ledger_ = s.ledger;
   guards_ = s.guards;
   warned_overlap_ = s.warned_overlap;

@@ -1,8 +1,10 @@
 #include "solver/time_step.hpp"
 
 #include "solver/errors.hpp"
+#include "solver/excitation_signal.hpp"
 #include "solver/impact_speed.hpp"
 #include "solver/measures.hpp"
+#include "solver/several_modes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -74,11 +76,14 @@ double pushing_area(const Enclosure& enclosure, const Vector3& direction) {
 /// its granules gets the small step that it needs, and a heavy one loses nothing.
 double effective_mass_at_wall(const Scene& scene, const GranuleClass& granule, std::size_t granules) {
   if (!scene.structure) return granule.mass;
-  const double fit = pushing_area(scene.enclosure, scene.structure->direction) /
-                     (2.0 * std::sqrt(3.0) * granule.radius * granule.radius);
+  double area = pushing_area(scene.enclosure, scene.structure->direction);
+  if (has_several_modes(scene)) // in whatever direction most walls push
+    for (const Vector3& axis : {Vector3{1.0, 0.0, 0.0}, Vector3{0.0, 1.0, 0.0}, Vector3{0.0, 0.0, 1.0}})
+      area = std::max(area, pushing_area(scene.enclosure, axis));
+  const double fit = area / (2.0 * std::sqrt(3.0) * granule.radius * granule.radius);
   // Even a wall that only slides past carries the one contact that is there.
   const double sharing = std::max(1.0, std::min(fit, static_cast<double>(granules)));
-  return 1.0 / (1.0 / granule.mass + sharing / scene.structure->mass);
+  return 1.0 / (1.0 / granule.mass + sharing / fastest_oscillator(*scene.structure).mass);
 }
 
 struct StiffestContact {
@@ -195,8 +200,10 @@ void step_without_granules(TimeStep& result, const Scene& scene, const Bound& st
   };
   if (scene.excitation.kind != ExcitationKind::none && scene.excitation.frequency > 0.0)
     bound(1.0 / scene.excitation.frequency, "forcing");
-  if (scene.structure && scene.structure->stiffness > 0.0)
-    bound(2.0 * pi * std::sqrt(scene.structure->mass / scene.structure->stiffness), "natural");
+  if (const double highest = highest_frequency(scene.excitation); highest > 0.0)
+    bound(1.0 / highest, "shortest forcing");
+  const Oscillator fastest = scene.structure ? fastest_oscillator(*scene.structure) : Oscillator{};
+  if (fastest.stiffness > 0.0) bound(2.0 * pi * std::sqrt(fastest.mass / fastest.stiffness), "natural");
   if (structure.step < longest) {
     longest = structure.step;
     result.reason = structure.reason;
@@ -245,8 +252,9 @@ TimeStep step_over(double per_contact, TimeStep result, const Scene& scene, cons
   bound(stable, structure.step, structure.reason);
   bound(chosen, structure.step, structure.reason);
   // The reaction is held over a step: steps near half the structure's own period would resonate with the kicks.
-  if (scene.structure && scene.structure->stiffness > 0.0) {
-    const double period = 2.0 * pi * std::sqrt(scene.structure->mass / scene.structure->stiffness);
+  const Oscillator fastest = scene.structure ? fastest_oscillator(*scene.structure) : Oscillator{};
+  if (fastest.stiffness > 0.0) {
+    const double period = 2.0 * pi * std::sqrt(fastest.mass / fastest.stiffness);
     bound(stable, period / 4.0, "the structure's natural period wants four steps at least");
     bound(chosen, period / 8.0,
           fmt::format("an eighth of the structure's natural period, {:.4g} s, which is stricter than T_c", period));
@@ -280,13 +288,38 @@ ContactCalibration calibrate_contacts(const Scene& scene, const ContactTable& co
   return {scene.contact, stiffest_contact(scene, contacts).kinds, impact_speed};
 }
 
+namespace {
+
+/// The structure is first taken half a step back by its exact solution, which grows as exp(c h / M) in that direction.
+/// And what is no sine is put piece by piece: so many pieces to a step, and no more.
+Bound bound_by_structure(const Scene& scene) {
+  Bound structure{infinity, ""};
+  if (!scene.structure) return structure;
+  const auto bound = [&structure](double step, const char* reason) {
+    if (step < structure.step) structure = {step, reason};
+  };
+  const Oscillator s = fastest_oscillator(*scene.structure);
+  if (s.damping > 0.0) bound(4.0 * s.mass / s.damping, "four times the structure's decay time, mass over damping");
+  const Excitation& e = scene.excitation;
+  if (const double highest = highest_frequency(e); highest > 0.0) {
+    if (granule_count(scene) > 0)
+      bound(0.125 / highest, "an eighth of the shortest forcing period");
+    else
+      bound(64.0 / highest, "64 of the shortest forcing periods");
+  }
+  if (is_motion_table(e))
+    for (std::size_t k = 0; k + 1 < e.times.size(); ++k)
+      bound(1000.0 * (e.times[k + 1] - e.times[k]), "a thousand rows of the table");
+  if (s.stiffness > 0.0 && (is_motion_table(e) || make_force_signal(scene)))
+    bound(500.0 * 2.0 * pi * std::sqrt(s.mass / s.stiffness), "500 of the structure's natural periods");
+  return structure;
+}
+
+} // namespace
+
 TimeStep choose_time_step(const Scene& scene, const ContactTable& contacts) {
   TimeStep result;
-  // The structure is first taken half a step back by its exact solution, which grows as exp(c h / M) in that direction.
-  Bound structure{infinity, ""};
-  if (scene.structure && scene.structure->damping > 0.0)
-    structure = {4.0 * scene.structure->mass / scene.structure->damping,
-                 "four times the structure's decay time, mass over damping"};
+  const Bound structure = bound_by_structure(scene);
   if (granule_count(scene) == 0) {
     step_without_granules(result, scene, structure);
     return result;
