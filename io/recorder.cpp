@@ -1,6 +1,8 @@
 #include "io/recorder.hpp"
 
+#include "io/decay_files.hpp"
 #include "io/profile_report.hpp"
+#include "io/run_response.hpp"
 #include "io/text_file.hpp"
 #include "io/version.hpp"
 
@@ -207,11 +209,43 @@ void Recorder::tell_progress() {
   options_.progress(progress);
 }
 
+namespace {
+
+/// response.csv, .unv, .svg of a run that was driven over a band, decay.csv, .svg of a free vibration. What stands in
+/// the way of a response does not make the run a failure: it is told, and stands in the summary.
+std::optional<FrequencyResponse> write_response_files(RunRecord& record, const RunFolder& files,
+                                                      const RunSceneOptions& options) {
+  const Scene& scene = record.plan->scene;
+  if (record.status != RunStatus::done || !scene.structure) return std::nullopt;
+  if (scene.excitation.kind == ExcitationKind::none && !record.response.cycles.empty()) {
+    replace_file(files.file("decay.csv"), decay_csv(record.response.cycles));
+    replace_file(files.file("decay.svg"), decay_svg(record.response.cycles, scene.title, *scene.structure));
+  }
+  if (!gives_response(scene)) return std::nullopt;
+  try {
+    FrequencyResponse response = run_response(scene, read_history(files.results(), response_columns));
+    const std::time_t now = std::time(nullptr);
+    for (const char* name : {"response.csv", "response.unv", "response.svg"})
+      write_response(response, scene, files.file(name), now);
+    if (options.warning)
+      for (const std::string& note : response.notes) options.warning("frequency response: " + note);
+    return response;
+  } catch (const UsageError& error) {
+    record.no_frequency_response = error.what();
+    if (options.warning) options.warning(error.what());
+    return std::nullopt;
+  }
+}
+
+} // namespace
+
 RunResult record_run(Simulation& simulation, ResultsWriter& results, const RunFolder& files,
                      const RunSceneOptions& options, RecorderSetup setup) {
   Recorder recorder(simulation, results, options, std::move(setup));
   recorder.go();
-  const RunRecord& record = recorder.record;
+  RunRecord& record = recorder.record;
+  const std::optional<FrequencyResponse> response = write_response_files(record, files, options);
+  if (response) record.frequency_response = &*response;
   RunResult result;
   result.status = record.status;
   result.message = record.message;
