@@ -53,15 +53,16 @@ std::vector<VibrationCycle> read_cycles(const std::filesystem::path& summary) {
   if (!file) throw FileError(summary.string() + ": cannot be read; the run has not come to its end");
   const nlohmann::json told = nlohmann::json::parse(file, nullptr, false);
   if (!told.is_object()) throw FileError(summary.string() + ": is damaged: no JSON object");
-  const nlohmann::json& structure = told.contains("structure") ? told["structure"] : nlohmann::json::object();
+  const nlohmann::json structure = told.value("structure", nlohmann::json());
   if (!structure.is_object() || !structure.contains("cycles"))
     throw UsageError("no decay: the run is no free vibration of a [structure] (it has none, or an [excitation])");
   const auto number = [&summary](const nlohmann::json& cycle, const char* key) {
-    const auto value = cycle.find(key);
+    const auto value = cycle.is_object() ? cycle.find(key) : cycle.end();
     if (value == cycle.end() || !(value->is_number() || value->is_null()))
       throw FileError(fmt::format("{}: is damaged: a cycle without {}", summary.string(), key));
     return value->is_null() ? std::numeric_limits<double>::quiet_NaN() : value->get<double>();
   };
+  if (!structure["cycles"].is_array()) throw FileError(summary.string() + ": is damaged: its cycles are no list");
   std::vector<VibrationCycle> cycles;
   for (const nlohmann::json& told_of : structure["cycles"]) {
     VibrationCycle cycle;
