@@ -83,6 +83,7 @@ public:
   Estimate(const ResponseHistory& history, const Drive& drive, const LinearHost& host, const ResponseSettings& settings)
       : history_(history), drive_(drive), host_(host), settings_(settings), rows_(examine(history)) {
     result_.method = drive.method;
+    result_.host = host;
     high_ = highest_frequency(rows_, drive, result_.notes);
     result_.settling = settling_time(history, drive, host, settings, result_.notes);
   }

@@ -48,7 +48,8 @@ struct FrequencyResponse {
   double segment = 0.0;  ///< s
   Spectra spectra;
   std::vector<std::complex<double>> response;         ///< H1 by line, m/N
-  std::vector<std::complex<double>> bare, added_mass; ///< closed forms by line, m/N
+  LinearHost host;                                    ///< as it was given
+  std::vector<std::complex<double>> bare, added_mass; ///< its closed forms by line, m/N
   std::size_t peak = 0;                               ///< line of the largest |H1|
   ResonanceFit fit;
   double bias = 0.0;              ///< of the peak's magnitude by the window, over it, estimated; 0 without a window

@@ -2,6 +2,7 @@
 
 #include "io/svg_grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
@@ -15,11 +16,41 @@ double degrees(const std::complex<double>& value) {
   return std::arg(value) * 180.0 / std::numbers::pi;
 }
 
+/// A phase lag of half a turn lies at -180, with room about it.
+double lag(const std::complex<double>& value) {
+  const double angle = degrees(value);
+  return angle > 90.0 ? angle - 360.0 : angle;
+}
+
 template <class Value>
 PlotSeries curve(const FrequencyResponse& response, const char* label, const char* colour, const Value& value) {
   PlotSeries series{.name = label, .colour = colour, .line = true, .dots = false};
   for (std::size_t k = 0; k < response.spectra.frequency.size(); ++k)
     series.points.push_back({.x = response.spectra.frequency[k], .y = value(k)});
+  return series;
+}
+
+/// A closed form has no lines: smooth, however far these are apart.
+template <class Value>
+PlotSeries closed_form(const FrequencyResponse& response, const char* label, const char* colour, const Value& value) {
+  constexpr int points = 1000;
+  PlotSeries series{.name = label, .colour = colour, .line = true, .dots = false};
+  const double from = response.spectra.frequency.front(), to = response.spectra.frequency.back();
+  for (int k = 0; k <= points; ++k) {
+    const double frequency = from + (to - from) * k / points;
+    series.points.push_back({.x = frequency, .y = value(frequency)});
+  }
+  return series;
+}
+
+PlotSeries magnitudes(const FrequencyResponse& response, const char* label, const char* colour) {
+  PlotSeries series = curve(response, label, colour, [&](std::size_t k) { return std::abs(response.response[k]); });
+  series.dots = series.points.size() <= 200;
+  for (std::size_t k = 0; response.has_coherence() && k < series.points.size(); ++k) {
+    const double error = std::min(response.spectra.random_error(k), 0.9);
+    series.points[k].low = series.points[k].y * (1.0 - error);
+    series.points[k].high = series.points[k].y * (1.0 + error);
+  }
   return series;
 }
 
@@ -57,20 +88,21 @@ std::string response_svg(const FrequencyResponse& response, const std::string& t
   const char* const measured = granules ? "with granules" : "of the run";
   Plot magnitude = panel("displacement over force, m/N", true, false);
   magnitude.title = title;
-  magnitude.series.push_back(
-      curve(response, "bare, closed form", bare_colour, [&](std::size_t k) { return std::abs(response.bare[k]); }));
-  if (granules)
-    magnitude.series.push_back(curve(response, "granules as added mass", added_colour,
-                                     [&](std::size_t k) { return std::abs(response.added_mass[k]); }));
-  magnitude.series.push_back(
-      curve(response, measured, measured_colour, [&](std::size_t k) { return std::abs(response.response[k]); }));
+  const auto host = [&](Plot& plot, const auto& part) {
+    plot.series.push_back(
+        closed_form(response, "bare, closed form", bare_colour, [&](double f) { return part(response.host.bare(f)); }));
+    if (granules)
+      plot.series.push_back(closed_form(response, "granules as added mass", added_colour,
+                                        [&](double f) { return part(response.host.added_mass(f)); }));
+  };
+  host(magnitude, [](const std::complex<double>& h) { return std::abs(h); });
+  magnitude.series.push_back(magnitudes(response, measured, measured_colour));
 
   Plot phase = panel("phase, degrees", false, true);
   phase.title = "Phase";
+  host(phase, lag);
   phase.series.push_back(
-      curve(response, "bare, closed form", bare_colour, [&](std::size_t k) { return degrees(response.bare[k]); }));
-  phase.series.push_back(
-      curve(response, measured, measured_colour, [&](std::size_t k) { return degrees(response.response[k]); }));
+      curve(response, measured, measured_colour, [&](std::size_t k) { return lag(response.response[k]); }));
 
   Plot density = panel("force, N^2/Hz", true, false);
   density.title = "Spectral density of the force";
