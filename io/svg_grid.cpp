@@ -17,8 +17,9 @@ std::string grid_svg(const std::vector<Plot>& plots, std::size_t columns) {
                   width * static_cast<double>(columns), height * static_cast<double>(rows));
   for (std::size_t k = 0; k < plots.size(); ++k) {
     const std::string plot = plots[k].svg(); // begins with its own <svg
+    const std::size_t row = k / columns;
     text += fmt::format("<svg x=\"{:g}\" y=\"{:g}\"{}", width * static_cast<double>(k % columns),
-                        height * static_cast<double>(k / columns), plot.substr(plot.find("<svg") + 4));
+                        height * static_cast<double>(row), plot.substr(plot.find("<svg") + 4));
   }
   return text + "</svg>\n";
 }
