@@ -1,15 +1,11 @@
 #include "io/granule_file.hpp"
 
+#include "io/csv_text.hpp"
 #include "io/nearest_name.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <charconv>
-#include <cmath>
-#include <cstring>
 #include <fmt/format.h>
-#include <fstream>
 #include <numeric>
 #include <string_view>
 
@@ -18,39 +14,16 @@ namespace grandamp {
 namespace {
 
 constexpr std::size_t most_faults = 20; // enough to see what is wrong with a file
-constexpr std::uintmax_t largest_file = std::uintmax_t{4} << 30;
 constexpr std::array<std::string_view, 12> names{"id", "x",  "y",  "z",  "radius", "density",
                                                  "vx", "vy", "vz", "wx", "wy",     "wz"};
 enum Column : std::size_t { id, x, y, z, radius, density, vx, vy, vz, wx, wy, wz };
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::string_view next_line(std::string_view& rest) {
-  const std::size_t end = rest.find('\n');
-  const std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  return line;
-}
-
-std::string_view next_field(std::string_view& rest, bool& more) {
-  const std::size_t end = rest.find(',');
-  more = end != std::string_view::npos;
-  const std::string_view field = rest.substr(0, end);
-  rest.remove_prefix(more ? end + 1 : rest.size());
-  return trimmed(field);
-}
 
 class Parser {
 public:
   explicit Parser(GranuleFile& result) : result_(result) {}
 
   void parse(std::string_view content) {
-    if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
+    skip_byte_order_mark(content);
     ++line_;
     if (!read_header(next_line(content))) return;
     reserve(static_cast<std::size_t>(std::count(content.begin(), content.end(), '\n')) + 1);
@@ -110,7 +83,7 @@ private:
       if (!more) return fault(fmt::format("{} fields where the header has {}", i, order_.size()));
       const std::string_view field = next_field(line, more);
       const Column column = order_[i];
-      const bool good = column == id ? read(field, number) && number >= 0 : read(field, value[column]);
+      const bool good = column == id ? read_number(field, number) && number >= 0 : read_number(field, value[column]);
       if (!good)
         return fault(fmt::format("{} = '{}': not a {}", names[column], field.substr(0, 40),
                                  column == id ? "whole number from 0" : "finite number"));
@@ -124,14 +97,6 @@ private:
     if (has(radius)) result_.radii.push_back(value[radius]);
     if (has(density)) result_.densities.push_back(value[density]);
     if (has(id)) ids_.emplace_back(number, line_);
-  }
-
-  template <class Number> static bool read(std::string_view field, Number& number) {
-    if (field.starts_with('+') && !field.starts_with("+-")) field.remove_prefix(1);
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
-    if (error != std::errc() || end != field.data() + field.size()) return false;
-    if constexpr (std::is_floating_point_v<Number>) return std::isfinite(number);
-    return true;
   }
 
   void sort_by_id() {
@@ -165,13 +130,6 @@ private:
   bool spins_ = false;
 };
 
-GranuleFile unreadable(const std::string& why) {
-  GranuleFile result;
-  result.faults.push_back("cannot be read: " + why);
-  result.unreadable = true;
-  return result;
-}
-
 } // namespace
 
 GranuleFile parse_granules(const std::string& content) {
@@ -181,21 +139,12 @@ GranuleFile parse_granules(const std::string& content) {
 }
 
 GranuleFile read_granule_file(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return unreadable("no such file");
-  // A device or a pipe could go on for ever.
-  if (!std::filesystem::is_regular_file(status)) return unreadable("not a regular file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return unreadable(std::strerror(errno));
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error) return unreadable(error.message());
-  if (size > largest_file) return unreadable("larger than 4 GiB");
-  std::string content(size, '\0');
-  stream.read(content.data(), static_cast<std::streamsize>(size));
-  content.resize(static_cast<std::size_t>(stream.gcount()));
-  if (stream.bad()) return unreadable(std::strerror(errno));
-  return parse_granules(content);
+  const CsvContent content = read_csv(file);
+  if (content.fault.empty()) return parse_granules(content.text);
+  GranuleFile result;
+  result.faults.push_back(content.fault);
+  result.unreadable = true;
+  return result;
 }
 
 } // namespace grandamp

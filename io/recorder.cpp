@@ -21,7 +21,8 @@ double seconds_since(WallClock::time_point start) {
 
 RecentAmplitude::RecentAmplitude(const Scene& scene) {
   if (!scene.structure) return;
-  period_ = scene.excitation.kind == ExcitationKind::harmonic
+  const ExcitationKind kind = scene.excitation.kind;
+  period_ = kind == ExcitationKind::harmonic || kind == ExcitationKind::base
                 ? 1.0 / scene.excitation.frequency
                 : 2.0 * std::numbers::pi * std::sqrt(scene.structure->mass / scene.structure->stiffness);
 }

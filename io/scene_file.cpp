@@ -113,8 +113,16 @@ private:
     throw SceneError(std::move(problems));
   }
 
+  bool make_absolute(const std::string& key) {
+    const std::optional<std::string> file = tree_.at_path(key).value<std::string>();
+    if (!file || std::filesystem::path(*file).is_absolute()) return false;
+    const std::filesystem::path absolute = std::filesystem::absolute(reading_.folder / *file).lexically_normal();
+    replace_string(tree_, key, absolute.string());
+    return true;
+  }
+
   bool make_file_paths_absolute() {
-    bool any = false;
+    bool any = tree_["excitation"].is_table() && make_absolute("excitation.file");
     const toml::array* populations = tree_["granules"].as_array();
     for (std::size_t i = 0; populations != nullptr && i < populations->size(); ++i) {
       const std::optional<std::string> file = (*populations)[i].as_table()->get_as<std::string>("file") != nullptr

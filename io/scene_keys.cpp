@@ -32,8 +32,25 @@ constexpr std::array<std::string_view, 11> contact_pair{
     "poisson"};
 constexpr std::array<std::string_view, 6> structure{"mass",      "stiffness",    "damping",
                                                     "direction", "displacement", "velocity"};
-constexpr std::array<std::string_view, 7> excitation{"kind",      "static_deflection", "force",    "frequency",
-                                                     "amplitude", "velocity",          "direction"};
+constexpr std::array<std::string_view, 19> excitation{"kind",
+                                                      "static_deflection",
+                                                      "force",
+                                                      "frequency",
+                                                      "amplitude",
+                                                      "acceleration",
+                                                      "velocity",
+                                                      "direction",
+                                                      "start_frequency",
+                                                      "end_frequency",
+                                                      "sweep",
+                                                      "sweep_duration",
+                                                      "force_rms",
+                                                      "band",
+                                                      "seed",
+                                                      "start",
+                                                      "pulse_duration",
+                                                      "file",
+                                                      "interpolation"};
 constexpr std::array<std::string_view, 7> time{"duration",     "steps_per_contact", "step",     "error",
                                                "impact_speed", "integrator",        "precision"};
 constexpr std::array<std::string_view, 7> verlet{"policy",       "skin",     "cell", "safety",

@@ -108,8 +108,10 @@ Scene read_tree(const toml::table& tree, SceneReading& reading) {
   check_room(scene, granules);
   read_packing(root, scene, granules);
   read_contact(root, scene, granules);
-  read_motion(root, scene);
+  read_structure(root, scene);
+  read_excitation(root, scene);
   read_time(root, scene);
+  check_table_reach(root, scene);
   read_verlet(root, scene);
   read_output(root, scene);
   for (TableReader& table : granules.tables) table.finish();

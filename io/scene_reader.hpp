@@ -21,7 +21,9 @@ Scene read_tree(const toml::table& tree, SceneReading& reading);
 GranulesRead read_granules(TableReader& root, Scene& scene);
 void read_packing(TableReader& root, Scene& scene, GranulesRead& granules);
 void read_contact(TableReader& root, Scene& scene, GranulesRead& granules);
-void read_motion(TableReader& root, Scene& scene); ///< [structure] and [excitation]
+void read_structure(TableReader& root, Scene& scene);
+void read_excitation(TableReader& root, Scene& scene);         ///< after the structure
+void check_table_reach(TableReader& root, const Scene& scene); ///< after the duration
 void read_time(TableReader& root, Scene& scene);
 void read_verlet(TableReader& root, Scene& scene);
 void read_output(TableReader& root, Scene& scene);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "io/granule_file.hpp"
+#include "io/table_file.hpp"
 #include "solver/errors.hpp"
 #include "solver/scene.hpp"
 
@@ -46,9 +47,10 @@ struct Finding {
 
 /// What the reading of one scene shares: where it is, what was overridden, what was found.
 struct SceneReading {
-  std::filesystem::path folder;                                            ///< granule files are relative to it
+  std::filesystem::path folder;                                            ///< files are relative to it
   std::map<std::string, std::string> overridden;                           ///< dotted key -> "KEY=VALUE"
   std::map<std::string, std::shared_ptr<const GranuleFile>> granule_files; ///< as read, by path
+  std::map<std::string, std::shared_ptr<const TableFile>> table_files;     ///< likewise
   std::vector<Finding> findings;
 
   bool is_overridden(const std::string& key) const;

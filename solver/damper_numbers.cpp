@@ -24,7 +24,7 @@ double bare_acceleration(const Scene& scene) {
     return natural * std::hypot(natural * s.displacement, s.velocity);
   }
   const double impedance = std::hypot(s.stiffness - s.mass * w * w, s.damping * w);
-  return impedance > 0.0 ? std::abs(harmonic_force(scene)) * w * w / impedance : none;
+  return impedance > 0.0 ? std::abs(driving_force(scene)) * w * w / impedance : none;
 }
 
 /// Along gravity, or else along the motion: what the bed leaves free of the enclosure, m.

@@ -1,7 +1,9 @@
 #include "solver/enclosure_motion.hpp"
 
-#include <Eigen/Core>
-#include <unsupported/Eigen/MatrixFunctions>
+#include "solver/cycle_phase.hpp"
+#include "solver/driven_structure.hpp"
+#include "solver/linear_solution.hpp"
+#include "solver/measures.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -10,56 +12,7 @@ namespace grandamp {
 
 namespace {
 
-using Vector5 = Eigen::Matrix<double, 5, 1>;
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
-
-/// The exact solution over an interval: y goes to y + growth y, and integrals of quadratic forms along the way.
-struct Solution {
-  Matrix5 growth; ///< exp(A s) - I: kept without the I, which would cost the small entries their digits
-  Matrix5 work;
-  Matrix5 loss;
-};
-
-/// exp(A) - I = A phi(A), phi being the upper right block of exp([[A, I], [0, 0]]). Every entry is then good to
-/// rounding of its own size: over millions of short steps, exp(A) itself would lose the phase.
-Matrix5 exponential_less_one(const Matrix5& matrix) {
-  Eigen::Matrix<double, 10, 10> block = Eigen::Matrix<double, 10, 10>::Zero();
-  block.topLeftCorner<5, 5>() = matrix;
-  block.topRightCorner<5, 5>().setIdentity();
-  const Eigen::Matrix<double, 10, 10> exponential = block.exp();
-  return matrix * exponential.topRightCorner<5, 5>();
-}
-
-/// Integral over [0, 1] of exp(A s)^T form exp(A s), for small A: six-point Gauss-Legendre, exact to rounding.
-Matrix5 integral_of(const Matrix5& form, const Matrix5& matrix) {
-  constexpr std::array<double, 3> node{0.2386191860831969, 0.6612093864662645, 0.9324695142031521};
-  constexpr std::array<double, 3> weight{0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
-  Matrix5 sum = Matrix5::Zero();
-  for (std::size_t k = 0; k < node.size(); ++k)
-    for (const double sign : {-1.0, 1.0}) {
-      const Matrix5 there = Matrix5(0.5 * (1.0 + sign * node[k]) * matrix).exp();
-      sum += 0.5 * weight[k] * there.transpose() * form * there;
-    }
-  return sum;
-}
-
-void twice_as_long(Solution& solution) {
-  const Matrix5 whole = Matrix5::Identity() + solution.growth;
-  solution.work = (solution.work + whole.transpose() * solution.work * whole).eval();
-  solution.loss = (solution.loss + whole.transpose() * solution.loss * whole).eval();
-  solution.growth = (2.0 * solution.growth + solution.growth * solution.growth).eval();
-}
-
-/// Starts from a piece so short that the matrix is small, and doubles it: no frequency and no damping is too large.
-Solution solve(const Matrix5& matrix, const Matrix5& work, const Matrix5& loss) {
-  int doublings = 0;
-  for (double norm = matrix.lpNorm<Eigen::Infinity>(); norm > 0.25 && doublings < 60; norm *= 0.5) ++doublings;
-  const double share = std::ldexp(1.0, -doublings);
-  const Matrix5 piece = share * matrix;
-  Solution solution{exponential_less_one(piece), share * integral_of(work, piece), share * integral_of(loss, piece)};
-  for (int k = 0; k < doublings; ++k) twice_as_long(solution);
-  return solution;
-}
 
 std::array<double, 5> row_of(const Matrix5& matrix, int row) {
   std::array<double, 5> values{};
@@ -88,20 +41,6 @@ double form_at(const std::array<double, 15>& form, const std::array<double, 5>& 
   return sum;
 }
 
-struct SineCosine {
-  double sine;
-  double cosine;
-};
-
-/// Of 2 pi times cycles_per_step times `steps`. The product is formed with its rounding error, and whole cycles are
-/// dropped before the angle is taken: as good after 10^9 cycles as in the first.
-SineCosine phase_at(double cycles_per_step, double steps) {
-  const double product = cycles_per_step * steps;
-  const double error = std::fma(cycles_per_step, steps, -product);
-  const double angle = 2.0 * std::numbers::pi * ((product - std::floor(product)) + error);
-  return {std::sin(angle), std::cos(angle)};
-}
-
 } // namespace
 
 EnclosureMotion::EnclosureMotion(const Scene& scene, double time_step) : time_step_(time_step) {
@@ -120,6 +59,13 @@ EnclosureMotion::EnclosureMotion(const Scene& scene, double time_step) : time_st
     else
       amplitude_ = scene.excitation.amplitude;
     initial_velocity_ = constant_velocity_ + amplitude_ * 2.0 * std::numbers::pi * frequency;
+  } else if (is_motion_table(scene.excitation)) {
+    kind_ = Kind::table;
+    direction_ = scene.excitation.direction;
+    table_ = std::make_shared<const PiecewisePolynomial>(make_motion(scene.excitation));
+    const Jet first = table_->at({});
+    initial_displacement_ = first.value;
+    initial_velocity_ = first.rate;
   }
 }
 
@@ -131,8 +77,9 @@ void EnclosureMotion::prepare_structure(const Scene& scene) {
   mass_ = structure.mass;
   stiffness_ = structure.stiffness;
   damping_ = structure.damping;
-  if (scene.excitation.kind == ExcitationKind::harmonic)
-    force_ = scene.excitation.force.value_or(stiffness_ * scene.excitation.static_deflection.value_or(0.0));
+  if (scene.excitation.kind != ExcitationKind::none && scene.excitation.kind != ExcitationKind::harmonic)
+    return prepare_drive(scene);
+  force_ = driving_force(scene);
 
   // d/ds of (X, V dt, p, q, r) with s = t / dt.
   const double h = time_step_;
@@ -150,15 +97,29 @@ void EnclosureMotion::prepare_structure(const Scene& scene) {
   Matrix5 loss = Matrix5::Zero(); // c V^2 dt = (c / dt) (V dt)^2 ds
   loss(1, 1) = damping_ / h;
 
-  Solution solution = solve(0.5 * matrix, 0.5 * work, 0.5 * loss);
+  LinearSolution<Matrix5> solution = solve_linear<Matrix5>(0.5 * matrix, 0.5 * work, 0.5 * loss);
   half_ = {row_of(solution.growth, 0), row_of(solution.growth, 1), triangle_of(solution.work),
            triangle_of(solution.loss)};
   twice_as_long(solution);
   whole_ = {row_of(solution.growth, 0), row_of(solution.growth, 1), triangle_of(solution.work),
             triangle_of(solution.loss)};
-  solution = solve(-0.5 * matrix, Matrix5::Zero(), Matrix5::Zero());
+  solution = solve_linear<Matrix5>(-0.5 * matrix, Matrix5::Zero(), Matrix5::Zero());
   backward_displacement_ = row_of(solution.growth, 0);
   backward_velocity_ = row_of(solution.growth, 1);
+}
+
+void EnclosureMotion::prepare_drive(const Scene& scene) {
+  kind_ = Kind::driven;
+  const auto only = [](double value) { return Eigen::MatrixXd::Constant(1, 1, value); };
+  Drive drive;
+  drive.frequency =
+      scene.excitation.kind == ExcitationKind::base ? scene.excitation.frequency : highest_frequency(scene.excitation);
+  drive.base = base_amplitude(scene);
+  drive.signal = make_force_signal(scene);
+  if (is_motion_table(scene.excitation)) drive.base_motion = make_motion(scene.excitation);
+  driven_ = std::make_shared<const DrivenStructure>(
+      LinearStructure{only(mass_), only(damping_), only(stiffness_), only(1.0), only(1.0)}, std::move(drive),
+      time_step_);
 }
 
 double EnclosureMotion::initial_velocity() const noexcept {
@@ -175,6 +136,14 @@ EnclosureState EnclosureMotion::start(double reaction) const {
     break;
   case Kind::prescribed:
     return {0.0, constant_velocity_ + 2.0 * amplitude_ / time_step_ * sine_half_ * cosine_half_};
+  case Kind::table:
+    return {0.0, mean_table_velocity(-1)};
+  case Kind::driven: {
+    DrivenStructure::State state = Eigen::Vector2d(initial_displacement_, initial_velocity_);
+    const Eigen::VectorXd held = Eigen::VectorXd::Constant(1, reaction);
+    for (std::int64_t k = 1; k <= driven_->pieces_per_half(); ++k) driven_->go_back(state, -k, held);
+    return {state(0), state(1)};
+  }
   case Kind::structure: {
     const double scale = time_step_ * time_step_ / mass_;
     const std::array<double, 5> y{initial_displacement_, initial_velocity_ * time_step_, 0.0, force_ * scale,
@@ -192,6 +161,10 @@ EnclosureStep EnclosureMotion::advance(EnclosureState& state, std::int64_t step_
     break;
   case Kind::prescribed:
     return advance_prescribed(state, step_number, reaction);
+  case Kind::table:
+    return advance_table(state, step_number, reaction);
+  case Kind::driven:
+    return advance_driven(state, step_number, reaction);
   case Kind::structure:
     return advance_structure(state, step_number, reaction);
   }
@@ -204,7 +177,7 @@ EnclosureStep EnclosureMotion::advance_structure(EnclosureState& state, std::int
   std::array<double, 5> y{state.displacement, state.velocity * time_step_, 0.0, 0.0, reaction * scale};
   EnclosureStep step;
   if (force_ != 0.0) {
-    const SineCosine phase = phase_at(cycles_per_step_, static_cast<double>(step_number) - 0.5);
+    const CyclePhase phase = phase_at(cycles_per_step_, static_cast<double>(step_number) - 0.5);
     y[2] = force_ * scale * phase.sine;
     y[3] = force_ * scale * phase.cosine;
     step.excitation = force_ * (phase.sine * cosine_half_ + phase.cosine * sine_half_);
@@ -233,18 +206,79 @@ EnclosureStep EnclosureMotion::advance_prescribed(EnclosureState& state, std::in
   step.displacement = constant_velocity_ * (steps * time_step_);
   step.velocity = step.velocity_after = constant_velocity_;
   if (amplitude_ != 0.0) {
-    const SineCosine phase = phase_at(cycles_per_step_, steps);
+    const CyclePhase phase = phase_at(cycles_per_step_, steps);
     step.displacement += amplitude_ * phase.sine;
     step.velocity += amplitude_ * 2.0 * std::numbers::pi * (cycles_per_step_ / time_step_) * phase.cosine;
     // (X(t_(n+1)) - X(t_n)) / dt, the difference of sines as a product: nothing cancels.
     const double cosine_after = phase.cosine * cosine_half_ - phase.sine * sine_half_;
     step.velocity_after += 2.0 * amplitude_ / time_step_ * sine_half_ * cosine_after;
   }
+  hold_against(reaction, step);
   state.velocity = step.velocity_after;
-  // What moves the enclosure holds it against the granules. The mean of the half-step velocities is the one that the
-  // granules' own kinetic energy changes by: a push of R for dt on a wall of that velocity.
+  return step;
+}
+
+/// What moves the enclosure holds it against the granules. The mean of the half-step velocities is the one that the
+/// granules' own kinetic energy changes by: a push of R for dt on a wall of that velocity.
+void EnclosureMotion::hold_against(double reaction, EnclosureStep& step) const {
   step.work_in = -reaction * 0.5 * (step.velocity_before + step.velocity_after) * time_step_;
   step.work_in_first_half = 0.5 * step.work_in;
+}
+
+/// (X(t_(n+1)) - X(t_n)) / dt, as the mean of the velocity: the difference would cancel. Where a knot lies between them
+/// the mean is taken piece by piece.
+double EnclosureMotion::mean_table_velocity(std::int64_t step_number) const {
+  constexpr std::array<double, 3> node{-0.7745966692414834, 0.0, 0.7745966692414834}; // Gauss-Legendre
+  constexpr std::array<double, 3> weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  const std::vector<double>& knots = table_->knots();
+  const double begin = static_cast<double>(step_number) * time_step_;
+  const double end = static_cast<double>(step_number + 1) * time_step_;
+  double sum = 0.0;
+  for (double from = begin; from < end;) {
+    const auto knot = std::upper_bound(knots.begin(), knots.end(), from);
+    const double to = knot == knots.end() ? end : std::min(end, *knot);
+    for (std::size_t k = 0; k < node.size(); ++k)
+      sum += weight[k] * (to - from) * table_->at({from, 0.5 * (1.0 + node[k]) * (to - from)}).rate;
+    from = to;
+  }
+  return sum / time_step_;
+}
+
+EnclosureStep EnclosureMotion::advance_table(EnclosureState& state, std::int64_t step_number, double reaction) const {
+  const Jet now = table_->at({static_cast<double>(step_number) * time_step_, 0.0});
+  EnclosureStep step;
+  step.velocity_before = state.velocity;
+  step.displacement = now.value;
+  step.velocity = now.rate;
+  step.velocity_after = mean_table_velocity(step_number);
+  hold_against(reaction, step);
+  state.velocity = step.velocity_after;
+  return step;
+}
+
+EnclosureStep EnclosureMotion::advance_driven(EnclosureState& state, std::int64_t step_number, double reaction) const {
+  const std::int64_t pieces = driven_->pieces_per_half(), middle = 2 * pieces * step_number;
+  const Eigen::VectorXd held = Eigen::VectorXd::Constant(1, reaction);
+  DrivenStructure::State now = Eigen::Vector2d(state.displacement, state.velocity);
+  EnclosureStep step;
+  step.velocity_before = state.velocity;
+  const auto over = [&](std::int64_t first) {
+    for (std::int64_t piece = first; piece < first + pieces; ++piece) {
+      const DrivenWork done = driven_->advance(now, piece, held);
+      step.work_in += done.work_in;
+      step.damping_loss += done.loss;
+    }
+  };
+  over(middle - pieces);
+  step.work_in_first_half = step.work_in;
+  step.damping_loss_first_half = step.damping_loss;
+  step.displacement = now(0);
+  step.velocity = now(1);
+  step.excitation = driven_->excitation(middle);
+  step.stored = driven_->stored(now, middle);
+  over(middle);
+  state = {now(0), now(1)};
+  step.velocity_after = state.velocity;
   return step;
 }
 

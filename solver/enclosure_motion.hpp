@@ -6,8 +6,12 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 namespace grandamp {
+
+class DrivenStructure;
+class PiecewisePolynomial;
 
 /// What one step of the enclosure gave. "At t_n": the middle of the interval from t_(n-1/2) to t_(n+1/2).
 struct EnclosureStep {
@@ -15,11 +19,11 @@ struct EnclosureStep {
   double velocity_after = 0.0;  ///< V at t_(n+1/2), m/s
   double displacement = 0.0;    ///< X at t_n, m
   double velocity = 0.0; ///< V at t_n, m/s (a granule's laboratory velocity at t_n takes the mean of before and after)
-  double excitation = 0.0;   ///< F at t_n, N
+  double excitation = 0.0;   ///< F at t_n, N (foundation in motion: K y + c y')
   double work_in = 0.0;      ///< by the excitation over the interval, J (prescribed: by whatever moves the enclosure,
                              ///< against the reaction)
-  double damping_loss = 0.0; ///< c V^2 integrated over the interval, J
-  double stored = 0.0;       ///< M V^2/2 + K X^2/2 at t_n, J
+  double damping_loss = 0.0; ///< c V^2 integrated over the interval (foundation in motion: V - y' for V), J
+  double stored = 0.0;       ///< M V^2/2 + K X^2/2 at t_n (foundation in motion: X - y for X), J
   // The share that falls before t_n: a ledger from t_0 to t_n is the sum of the steps before n, plus the first half of
   // step n, less the first half of step 0 (which lies before t = 0).
   double work_in_first_half = 0.0;
@@ -54,7 +58,7 @@ public:
   EnclosureStep advance(EnclosureState& state, std::int64_t step_number, double reaction) const;
 
 private:
-  enum class Kind { still, prescribed, structure };
+  enum class Kind { still, prescribed, table, structure, driven };
 
   /// What the exact solution does to (X, V dt, p, q, r) over an interval, p, q and r being the forces
   /// F0 sin(w t), F0 cos(w t) and R times dt^2 / M: all in metres, so that the numbers are of one kind.
@@ -66,8 +70,13 @@ private:
   };
 
   void prepare_structure(const Scene& scene);
+  void prepare_drive(const Scene& scene);
+  double mean_table_velocity(std::int64_t step_number) const;
+  void hold_against(double reaction, EnclosureStep& step) const;
   EnclosureStep advance_structure(EnclosureState& state, std::int64_t step_number, double reaction) const;
+  EnclosureStep advance_driven(EnclosureState& state, std::int64_t step_number, double reaction) const;
   EnclosureStep advance_prescribed(EnclosureState& state, std::int64_t step_number, double reaction) const;
+  EnclosureStep advance_table(EnclosureState& state, std::int64_t step_number, double reaction) const;
 
   Kind kind_ = Kind::still;
   Vector3 direction_{1.0, 0.0, 0.0};
@@ -87,6 +96,8 @@ private:
   Propagator whole_;                              ///< from t_(n-1/2) to t_(n+1/2)
   std::array<double, 5> backward_displacement_{}; ///< from t_0 to t_(-1/2)
   std::array<double, 5> backward_velocity_{};
+  std::shared_ptr<const DrivenStructure> driven_;    ///< what is no harmonic force
+  std::shared_ptr<const PiecewisePolynomial> table_; ///< the enclosure's own motion, m
 };
 
 } // namespace grandamp

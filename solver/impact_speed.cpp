@@ -1,6 +1,7 @@
 #include "solver/impact_speed.hpp"
 
 #include "solver/enclosure_motion.hpp"
+#include "solver/excitation_signal.hpp"
 #include "solver/measures.hpp"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ struct EnclosureSpeed {
 /// (resonance without damping) what the force can have given at most.
 double velocity_bound_after(const Scene& scene, double time) {
   const Structure& s = *scene.structure;
-  const double force = harmonic_force(scene);
+  const double force = driving_force(scene);
   const double w = 2.0 * pi * scene.excitation.frequency;
   const double in_phase = s.stiffness - s.mass * w * w, out_of_phase = s.damping * w;
   const double square = in_phase * in_phase + out_of_phase * out_of_phase;
@@ -41,15 +42,39 @@ double velocity_bound_after(const Scene& scene, double time) {
   return std::min(at_most, std::hypot(a, b) * w + left * transient);
 }
 
-/// The exact solution, looked at 64 times a period: no formula for transient, beat or overdamping is needed. A very
-/// long run is looked at over its first 4096 periods, and bounded from there on.
-EnclosureSpeed bare_enclosure_speed(const Scene& scene) {
-  double rate = scene.excitation.kind == ExcitationKind::none ? 0.0 : scene.excitation.frequency;
+/// The same for what is no harmonic force: the steady amplitude at resonance, F / c, or what the force can have given.
+double velocity_bound_at_resonance(const Scene& scene) {
+  const Structure& s = *scene.structure;
+  const double force = largest_force(scene);
+  const double first = std::hypot(s.velocity, std::sqrt(s.stiffness / s.mass) * s.displacement);
+  const double given = force / s.mass * scene.time.duration;
+  return first + (s.damping > 0.0 ? std::min(given, force / s.damping) : given);
+}
+
+/// Highest rate at which the enclosure's motion may change, Hz.
+double rate_of_motion(const Scene& scene) {
+  const Excitation& e = scene.excitation;
+  double rate = e.kind == ExcitationKind::none ? 0.0 : std::max(e.frequency, highest_frequency(e));
+  if (e.kind == ExcitationKind::impulse) rate = 0.5 / e.pulse_duration;
+  if (is_motion_table(e)) // four rows make a wave
+    for (std::size_t k = 0; k + 1 < e.times.size(); ++k) rate = std::max(rate, 0.25 / (e.times[k + 1] - e.times[k]));
   if (scene.structure) {
     rate = std::max(rate, std::sqrt(scene.structure->stiffness / scene.structure->mass) / (2.0 * pi));
     rate = std::max(rate, scene.structure->damping / (4.0 * scene.structure->mass));
   }
-  const double looked_at = rate > 0.0 ? std::min(scene.time.duration, 4096.0 / rate) : scene.time.duration;
+  return rate;
+}
+
+/// The exact solution, looked at 64 times a period: no formula for transient, beat or overdamping is needed. A very
+/// long run is looked at over its first 4096 periods, and bounded from there on; a chirp, an impulse or a table, whose
+/// best is yet to come, over 16 times as many.
+EnclosureSpeed bare_enclosure_speed(const Scene& scene) {
+  const ExcitationKind kind = scene.excitation.kind;
+  const double rate = rate_of_motion(scene);
+  const bool comes_later =
+      kind == ExcitationKind::chirp || kind == ExcitationKind::impulse || kind == ExcitationKind::table;
+  const double periods = comes_later ? 65536.0 : 4096.0;
+  const double looked_at = rate > 0.0 ? std::min(scene.time.duration, periods / rate) : scene.time.duration;
   const double looks = std::max(64.0, std::ceil(64.0 * rate * looked_at));
   const EnclosureMotion motion(scene, looked_at / looks);
   EnclosureState state = motion.start(0.0);
@@ -60,7 +85,8 @@ EnclosureSpeed bare_enclosure_speed(const Scene& scene) {
     speed.largest_change = std::max(speed.largest_change, std::abs(velocity - motion.initial_velocity()));
   }
   if (scene.structure && looked_at < scene.time.duration) {
-    const double later = velocity_bound_after(scene, looked_at);
+    const bool sine = kind == ExcitationKind::none || kind == ExcitationKind::harmonic;
+    const double later = sine ? velocity_bound_after(scene, looked_at) : velocity_bound_at_resonance(scene);
     speed.largest = std::max(speed.largest, later);
     speed.largest_change = std::max(speed.largest_change, later + std::abs(motion.initial_velocity()));
   }

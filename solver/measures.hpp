@@ -91,10 +91,28 @@ inline double extent_along(const Enclosure& enclosure, const Vector3& direction)
   return enclosure.height * axial + enclosure.diameter * std::sqrt(std::max(0.0, 1.0 - axial * axial));
 }
 
-/// Amplitude of the harmonic force, N; 0 without one.
-inline double harmonic_force(const Scene& scene) {
-  if (scene.excitation.kind != ExcitationKind::harmonic || !scene.structure) return 0.0;
-  return scene.excitation.force.value_or(scene.structure->stiffness * scene.excitation.static_deflection.value_or(0.0));
+/// Amplitude of a harmonic force, a chirp or an impulse, N; 0 without one.
+inline double driving_force(const Scene& scene) {
+  const Excitation& e = scene.excitation;
+  const bool drives =
+      e.kind == ExcitationKind::harmonic || e.kind == ExcitationKind::chirp || e.kind == ExcitationKind::impulse;
+  if (!drives || !scene.structure) return 0.0;
+  return e.force.value_or(scene.structure->stiffness * e.static_deflection.value_or(0.0));
+}
+
+/// Amplitude of the foundation's sine, m; 0 without one.
+inline double base_amplitude(const Scene& scene) {
+  const Excitation& e = scene.excitation;
+  if (e.kind != ExcitationKind::base) return 0.0;
+  const double w = 2.0 * std::numbers::pi * e.frequency;
+  return e.acceleration ? *e.acceleration / (w * w) : e.amplitude;
+}
+
+/// Amplitude of the force K y + c y' that the moving foundation exerts on a structure held still, N.
+inline double base_force(const Scene& scene) {
+  if (!scene.structure) return 0.0;
+  const double w = 2.0 * std::numbers::pi * scene.excitation.frequency;
+  return std::abs(base_amplitude(scene)) * std::hypot(scene.structure->stiffness, scene.structure->damping * w);
 }
 
 /// Solid fraction that a poured bed is reckoned at.

@@ -67,6 +67,11 @@ void choose_effects(Plan& plan, const ContactTable& contacts) {
   effect("structure", scene.structure.has_value());
   effect("harmonic", scene.excitation.kind == ExcitationKind::harmonic);
   effect("prescribed", scene.excitation.kind == ExcitationKind::prescribed);
+  effect("base", scene.excitation.kind == ExcitationKind::base);
+  effect("chirp", scene.excitation.kind == ExcitationKind::chirp);
+  effect("random", scene.excitation.kind == ExcitationKind::random);
+  effect("impulse", scene.excitation.kind == ExcitationKind::impulse);
+  effect("table", scene.excitation.kind == ExcitationKind::table);
   effect("energy", scene.output.energy);
   effect("audit", granules && scene.verlet.audit > 0);
   effect("verlet", granules && scene.time.integrator == Integrator::verlet);
@@ -156,6 +161,10 @@ Plan make_plan(const Scene& scene) {
 
   Plan plan;
   plan.scene = scene;
+  // A run that goes on beyond its end keeps the sweep that it began with.
+  Excitation& excitation = plan.scene.excitation;
+  if (excitation.kind == ExcitationKind::chirp && !excitation.sweep_duration)
+    excitation.sweep_duration = scene.time.duration;
   plan.granules = granule_count(scene);
   const RadiusRange radii = radius_range(scene);
   plan.smallest_radius = radii.smallest;

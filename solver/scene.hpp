@@ -79,8 +79,21 @@ struct Contact {
   std::vector<PairContact> pairs;
 };
 
+/// A structure of several degrees of freedom q: M q'' + C q' + K q = force F + attachment^T R, and the enclosure's
+/// displacement is attachment q, in three directions. Modes are the diagonal case.
+struct SeveralModes {
+  std::size_t size = 0;          ///< n; 0: none, the structure has one degree of freedom
+  std::vector<double> mass;      ///< n x n by rows, symmetric, kg (modes scaled otherwise: what goes with their shapes)
+  std::vector<double> damping;   ///< n x n, N s/m
+  std::vector<double> stiffness; ///< n x n, N/m
+  std::vector<double> attachment;   ///< 3 x n by rows
+  std::vector<double> force;        ///< n
+  std::vector<double> displacement; ///< n, q at t = 0
+  std::vector<double> velocity;     ///< n, q' at t = 0
+};
+
 /// [structure]: one degree of freedom along `direction`, M x'' + c x' + K x = F + R; x from the equilibrium without
-/// granules.
+/// granules. Of several modes `direction` is the one that is told of, and mass, stiffness and damping are unused.
 struct Structure {
   double mass = 0.0;                ///< without granules, kg
   double stiffness = 0.0;           ///< N/m
@@ -88,20 +101,57 @@ struct Structure {
   Vector3 direction{0.0, 0.0, 1.0}; ///< unit vector (the reader normalises)
   double displacement = 0.0;        ///< at t = 0, m
   double velocity = 0.0;            ///< at t = 0, m/s
+  SeveralModes modes{};
 };
 
-enum class ExcitationKind { none, harmonic, prescribed };
+enum class ExcitationKind { none, harmonic, prescribed, base, chirp, random, impulse, table };
 
-/// [excitation]. harmonic: F = force sin(2 pi f t) on the structure. prescribed: the enclosure moves as
-/// x = amplitude sin(2 pi f t), or at the constant `velocity`, along `direction`; without a structure.
+/// How a chirp's frequency goes from start to end: by as many Hz, or by as many octaves, in equal times.
+enum class Sweep { linear, logarithmic };
+
+/// What a table holds beside time: a force on the structure, N, or a motion: of the foundation that the structure
+/// stands on, or without a structure the enclosure's own, as displacement in m or acceleration in m/s^2.
+enum class TableQuantity { force, displacement, acceleration };
+/// Between the rows of a table: a cubic spline, or straight lines (not for displacements).
+enum class Interpolation { cubic, linear };
+
+/// [excitation]. Forces act on the structure along its direction:
+/// harmonic: F = force sin(2 pi f t).
+/// chirp: F = force sin(phase), the frequency going from start_frequency to end_frequency; nothing afterwards.
+/// random: evenly distributed over `band`, zero outside of it; a function of time, Scene::seed and `seed` alone.
+/// impulse: half a sine, force sin(pi (t - start) / pulse_duration).
+/// table: `values` over `times`, interpolated; a force is zero before the first and after the last.
+/// Motions:
+/// base: the structure's foundation moves as y = amplitude sin(2 pi f t), or amplitude = acceleration / (2 pi f)^2.
+/// prescribed: the enclosure moves as x = amplitude sin(2 pi f t), or at the constant `velocity`, along `direction`;
+/// without a structure.
+/// table of a displacement or acceleration: see TableQuantity.
 struct Excitation {
   ExcitationKind kind = ExcitationKind::none;
-  std::optional<double> static_deflection; ///< harmonic: force = structure.stiffness * static_deflection, m
-  std::optional<double> force;             ///< harmonic: amplitude, N
-  double frequency = 0.0;                  ///< Hz
-  double amplitude = 0.0;                  ///< prescribed, m
+  std::optional<double> static_deflection; ///< harmonic, chirp: force = structure.stiffness * static_deflection, m
+  std::optional<double> force;             ///< harmonic, chirp, impulse: amplitude, N
+  double frequency = 0.0;                  ///< harmonic, prescribed, base: Hz
+  double amplitude = 0.0;                  ///< prescribed, base: m
+  std::optional<double> acceleration;      ///< base, instead of amplitude: m/s^2
   std::optional<double> velocity;          ///< prescribed, constant, m/s
-  Vector3 direction{1.0, 0.0, 0.0};        ///< prescribed; unit vector
+  Vector3 direction{1.0, 0.0, 0.0};        ///< prescribed, or a table without a structure; unit vector
+
+  double start_frequency = 0.0;         ///< chirp, Hz
+  double end_frequency = 0.0;           ///< chirp, Hz
+  Sweep sweep = Sweep::linear;          ///< chirp
+  std::optional<double> sweep_duration; ///< chirp, s; left out: the whole run (make_plan fills it in)
+
+  double force_rms = 0.0;               ///< random, N
+  std::array<double, 2> band{0.0, 0.0}; ///< random, Hz
+  std::uint64_t seed = 0;               ///< random: another number, another signal of the same scene
+
+  double start = 0.0;          ///< impulse, s
+  double pulse_duration = 0.0; ///< impulse, s
+
+  TableQuantity quantity = TableQuantity::force;      ///< table
+  Interpolation interpolation = Interpolation::cubic; ///< table
+  std::vector<double> times;                          ///< table, s, increasing
+  std::vector<double> values;                         ///< table, one for each time
 };
 
 enum class Integrator { leapfrog, verlet };

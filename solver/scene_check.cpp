@@ -150,6 +150,128 @@ void check_fit(Faults& faults, const Scene& scene) {
                            static_cast<std::size_t>(static_cast<double>(granule_count(scene)) * most / fraction)));
 }
 
+/// A narrower band is a sine.
+constexpr double least_relative_band = 1.0e-6;
+
+void check_table(Faults& faults, const Scene& scene) {
+  const Excitation& e = scene.excitation;
+  if (e.times.size() < 2 || e.times.size() != e.values.size())
+    return faults.add("excitation.times", fmt::format("{} times, {} values", e.times.size(), e.values.size()),
+                      "not a table", "two rows at least, and a value for each time");
+  for (std::size_t k = 0; k < e.times.size(); ++k) {
+    if (!faults.finite(fmt::format("excitation.times.{}", k), e.times[k]) ||
+        !faults.finite(fmt::format("excitation.values.{}", k), e.values[k]))
+      return;
+    if (k > 0 && !(e.times[k] > e.times[k - 1]))
+      return faults.add(fmt::format("excitation.times.{}", k), fmt::format("{:g}", e.times[k]),
+                        "not after the one before", "increasing times");
+  }
+  if (e.quantity == TableQuantity::force) return;
+  if (e.quantity == TableQuantity::displacement && e.interpolation == Interpolation::linear)
+    faults.add("excitation.interpolation", "linear", "a displacement with kinks has velocities that jump", "\"cubic\"");
+  // How a foundation moves on after the last row, nobody has said.
+  if (e.times.front() > 0.0 || e.times.back() < scene.time.duration * (1.0 - 1.0e-9))
+    faults.add("excitation.times", fmt::format("{:g} to {:g} s", e.times.front(), e.times.back()),
+               "the motion is not known for the whole run",
+               fmt::format("rows from 0 (or before) to {:g} s (or beyond)", scene.time.duration));
+}
+
+void check_driving_force(Faults& faults, const Excitation& e) {
+  if (e.force.has_value() == e.static_deflection.has_value())
+    faults.add("excitation.force", "", e.force ? "given beside static_deflection" : "missing",
+               "force or static_deflection, one of them");
+  if (e.force) faults.finite("excitation.force", *e.force);
+  if (e.static_deflection) faults.finite("excitation.static_deflection", *e.static_deflection);
+}
+
+const char* name(ExcitationKind kind) {
+  switch (kind) {
+  case ExcitationKind::harmonic:
+    return "harmonic";
+  case ExcitationKind::prescribed:
+    return "prescribed";
+  case ExcitationKind::base:
+    return "base";
+  case ExcitationKind::chirp:
+    return "chirp";
+  case ExcitationKind::random:
+    return "random";
+  case ExcitationKind::impulse:
+    return "impulse";
+  case ExcitationKind::table:
+    return "table";
+  case ExcitationKind::none:
+    break;
+  }
+  return "none";
+}
+
+void check_prescribed(Faults& faults, const Scene& scene) {
+  const Excitation& e = scene.excitation;
+  if (scene.structure)
+    faults.add("excitation.kind", "prescribed", "a prescribed motion leaves no room for a structure",
+               "\"harmonic\", or no [structure]");
+  faults.unit("excitation.direction", e.direction);
+  if (e.velocity) {
+    faults.finite("excitation.velocity", *e.velocity);
+  } else {
+    faults.finite("excitation.amplitude", e.amplitude);
+    faults.positive("excitation.frequency", e.frequency);
+  }
+}
+
+void check_excitation(Faults& faults, const Scene& scene) {
+  const Excitation& e = scene.excitation;
+  const bool needs_structure = e.kind != ExcitationKind::none && e.kind != ExcitationKind::prescribed &&
+                               !(e.kind == ExcitationKind::table && e.quantity != TableQuantity::force);
+  if (needs_structure && !scene.structure)
+    faults.add("excitation.kind", name(e.kind),
+               e.kind == ExcitationKind::base ? "a foundation needs a structure to stand on it"
+                                              : "a force needs a structure to act on",
+               "\"prescribed\", or a [structure]");
+  switch (e.kind) {
+  case ExcitationKind::none:
+    break;
+  case ExcitationKind::harmonic:
+    faults.positive("excitation.frequency", e.frequency);
+    check_driving_force(faults, e);
+    break;
+  case ExcitationKind::prescribed:
+    check_prescribed(faults, scene);
+    break;
+  case ExcitationKind::base:
+    faults.positive("excitation.frequency", e.frequency);
+    faults.finite("excitation.amplitude", e.amplitude);
+    if (e.acceleration) faults.finite("excitation.acceleration", *e.acceleration);
+    break;
+  case ExcitationKind::chirp:
+    faults.positive("excitation.start_frequency", e.start_frequency);
+    faults.positive("excitation.end_frequency", e.end_frequency);
+    if (e.sweep_duration) faults.positive("excitation.sweep_duration", *e.sweep_duration);
+    check_driving_force(faults, e);
+    break;
+  case ExcitationKind::random:
+    faults.not_negative("excitation.force_rms", e.force_rms);
+    if (faults.not_negative("excitation.band.0", e.band[0]) && faults.positive("excitation.band.1", e.band[1]) &&
+        !(e.band[1] - e.band[0] >= least_relative_band * e.band[1]))
+      faults.add("excitation.band", fmt::format("[{:g}, {:g}]", e.band[0], e.band[1]), "not a band",
+                 fmt::format("from < to, and to - from at least {:g} of to", least_relative_band));
+    break;
+  case ExcitationKind::impulse:
+    if (e.force)
+      faults.finite("excitation.force", *e.force);
+    else
+      faults.add("excitation.force", "", "missing", "N, the peak of the pulse");
+    faults.not_negative("excitation.start", e.start);
+    faults.positive("excitation.pulse_duration", e.pulse_duration);
+    break;
+  case ExcitationKind::table:
+    if (!scene.structure && e.quantity != TableQuantity::force) faults.unit("excitation.direction", e.direction);
+    check_table(faults, scene);
+    break;
+  }
+}
+
 void check_motion(Faults& faults, const Scene& scene) {
   if (scene.structure) {
     const Structure& s = *scene.structure;
@@ -160,34 +282,7 @@ void check_motion(Faults& faults, const Scene& scene) {
     faults.finite("structure.displacement", s.displacement);
     faults.finite("structure.velocity", s.velocity);
   }
-  const Excitation& e = scene.excitation;
-  switch (e.kind) {
-  case ExcitationKind::none:
-    break;
-  case ExcitationKind::harmonic:
-    faults.positive("excitation.frequency", e.frequency);
-    if (!scene.structure)
-      faults.add("excitation.kind", "harmonic", "a force needs a structure to act on",
-                 "\"prescribed\", or a [structure]");
-    if (e.force.has_value() == e.static_deflection.has_value())
-      faults.add("excitation.force", "", e.force ? "given beside static_deflection" : "missing",
-                 "force or static_deflection, one of them");
-    if (e.force) faults.finite("excitation.force", *e.force);
-    if (e.static_deflection) faults.finite("excitation.static_deflection", *e.static_deflection);
-    break;
-  case ExcitationKind::prescribed:
-    if (scene.structure)
-      faults.add("excitation.kind", "prescribed", "a prescribed motion leaves no room for a structure",
-                 "\"harmonic\", or no [structure]");
-    faults.unit("excitation.direction", e.direction);
-    if (e.velocity)
-      faults.finite("excitation.velocity", *e.velocity);
-    else {
-      faults.finite("excitation.amplitude", e.amplitude);
-      faults.positive("excitation.frequency", e.frequency);
-    }
-    break;
-  }
+  check_excitation(faults, scene);
 }
 
 /// Beyond, a contact means nothing.

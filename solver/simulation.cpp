@@ -46,7 +46,7 @@ int chosen_threads(int asked, std::size_t granules) {
 }
 
 double forcing_period(const Excitation& excitation) {
-  const bool periodic = excitation.kind == ExcitationKind::harmonic ||
+  const bool periodic = excitation.kind == ExcitationKind::harmonic || excitation.kind == ExcitationKind::base ||
                         (excitation.kind == ExcitationKind::prescribed && !excitation.velocity);
   return periodic && excitation.frequency > 0.0 ? 1.0 / excitation.frequency : 0.0;
 }

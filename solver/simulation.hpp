@@ -14,7 +14,7 @@ namespace grandamp {
 
 /// Energies by mechanism since t = 0, J. Losses are positive.
 struct Ledger {
-  double work_in = 0.0; ///< by the excitation (a force, or a prescribed motion) on the enclosure
+  double work_in = 0.0; ///< by the excitation: a force, a foundation's motion, or a prescribed one
   double structural_damping = 0.0;
   double normal_granule = 0.0;
   double normal_wall = 0.0;
@@ -35,7 +35,7 @@ struct Sample {
   double time = 0.0;         ///< s
   double displacement = 0.0; ///< of the enclosure along its direction, m
   double velocity = 0.0;     ///< m/s
-  double excitation = 0.0;   ///< force on the structure, N (prescribed motion: 0)
+  double excitation = 0.0;   ///< force on the structure, N (foundation in motion: K y + c y'; prescribed motion: 0)
   double reaction = 0.0;     ///< of the granules on the enclosure along its direction, N
   Vector3 wall_force{};      ///< of the granules on the enclosure, N; `reaction` is its part along the direction
   StoredEnergy stored;

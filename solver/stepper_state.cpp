@@ -52,6 +52,17 @@ std::vector<double> Stepper::constants() const {
     const EnclosureStep step = motion_.advance(state, 7919 * k, 0.25);
     values.insert(values.end(), {step.displacement, step.velocity, step.velocity_after, step.excitation, step.work_in});
   }
+  // A table is read anew when a run goes on, and may be another by then.
+  const Excitation& excitation = plan_.scene.excitation;
+  if (excitation.kind == ExcitationKind::table) {
+    std::vector<double> sums(3, 0.0);
+    for (std::size_t k = 0; k < excitation.times.size(); ++k) {
+      sums[0] += excitation.times[k];
+      sums[1] += excitation.values[k];
+      sums[2] += static_cast<double>(k % 1009) * excitation.values[k];
+    }
+    values.insert(values.end(), sums.begin(), sums.end());
+  }
   return values;
 }
 

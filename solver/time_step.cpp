@@ -1,6 +1,7 @@
 #include "solver/time_step.hpp"
 
 #include "solver/errors.hpp"
+#include "solver/excitation_signal.hpp"
 #include "solver/impact_speed.hpp"
 #include "solver/measures.hpp"
 
@@ -195,6 +196,8 @@ void step_without_granules(TimeStep& result, const Scene& scene, const Bound& st
   };
   if (scene.excitation.kind != ExcitationKind::none && scene.excitation.frequency > 0.0)
     bound(1.0 / scene.excitation.frequency, "forcing");
+  if (const double highest = highest_frequency(scene.excitation); highest > 0.0)
+    bound(1.0 / highest, "shortest forcing");
   if (scene.structure && scene.structure->stiffness > 0.0)
     bound(2.0 * pi * std::sqrt(scene.structure->mass / scene.structure->stiffness), "natural");
   if (structure.step < longest) {
@@ -280,13 +283,38 @@ ContactCalibration calibrate_contacts(const Scene& scene, const ContactTable& co
   return {scene.contact, stiffest_contact(scene, contacts).kinds, impact_speed};
 }
 
+namespace {
+
+/// The structure is first taken half a step back by its exact solution, which grows as exp(c h / M) in that direction.
+/// And what is no sine is put piece by piece: so many pieces to a step, and no more.
+Bound bound_by_structure(const Scene& scene) {
+  Bound structure{infinity, ""};
+  if (!scene.structure) return structure;
+  const auto bound = [&structure](double step, const char* reason) {
+    if (step < structure.step) structure = {step, reason};
+  };
+  const Structure& s = *scene.structure;
+  if (s.damping > 0.0) bound(4.0 * s.mass / s.damping, "four times the structure's decay time, mass over damping");
+  const Excitation& e = scene.excitation;
+  if (const double highest = highest_frequency(e); highest > 0.0) {
+    if (granule_count(scene) > 0)
+      bound(0.125 / highest, "an eighth of the shortest forcing period");
+    else
+      bound(64.0 / highest, "64 of the shortest forcing periods");
+  }
+  if (is_motion_table(e))
+    for (std::size_t k = 0; k + 1 < e.times.size(); ++k)
+      bound(1000.0 * (e.times[k + 1] - e.times[k]), "a thousand rows of the table");
+  if (s.stiffness > 0.0 && (is_motion_table(e) || make_force_signal(scene)))
+    bound(500.0 * 2.0 * pi * std::sqrt(s.mass / s.stiffness), "500 of the structure's natural periods");
+  return structure;
+}
+
+} // namespace
+
 TimeStep choose_time_step(const Scene& scene, const ContactTable& contacts) {
   TimeStep result;
-  // The structure is first taken half a step back by its exact solution, which grows as exp(c h / M) in that direction.
-  Bound structure{infinity, ""};
-  if (scene.structure && scene.structure->damping > 0.0)
-    structure = {4.0 * scene.structure->mass / scene.structure->damping,
-                 "four times the structure's decay time, mass over damping"};
+  const Bound structure = bound_by_structure(scene);
   if (granule_count(scene) == 0) {
     step_without_granules(result, scene, structure);
     return result;

@@ -7,10 +7,12 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 using namespace grandamp;
 using namespace grandamp::test;
@@ -139,6 +141,81 @@ TEST_CASE("a state put back goes on by the same bits: nothing but the structure,
     CHECK(whole.response().cycle_amplitudes == second.response().cycle_amplitudes);
     CHECK(whole.response().cycle_amplitudes.size() >= 7);
   }
+}
+
+TEST_CASE("a state put back goes on by the same bits: foundation, chirp, random force, impulse and tables") {
+  std::vector<Excitation> all(6);
+  all[0].kind = ExcitationKind::base;
+  all[0].acceleration = 8.0;
+  all[0].frequency = 15.0;
+  all[1].kind = ExcitationKind::chirp;
+  all[1].static_deflection = 0.5e-3;
+  all[1].start_frequency = 10.0;
+  all[1].end_frequency = 200.0;
+  all[1].sweep = Sweep::logarithmic;
+  all[1].sweep_duration = 0.021;
+  all[2].kind = ExcitationKind::random;
+  all[2].force_rms = 2.0;
+  all[2].band = {30.0, 3000.0}; // cells and blocks that come and go within the run
+  all[2].seed = 3;
+  all[3].kind = ExcitationKind::impulse;
+  all[3].force = 30.0;
+  all[3].start = 4.0e-3;
+  all[3].pulse_duration = 2.0e-3;
+  for (const std::size_t k : {4U, 5U}) {
+    all[k].kind = ExcitationKind::table;
+    all[k].quantity = k == 4 ? TableQuantity::force : TableQuantity::acceleration;
+    for (int row = 0; row <= 1010; ++row) {
+      all[k].times.push_back(1.0e-3 * row);
+      all[k].values.push_back((k == 4 ? 1.0 : 10.0) * std::sin(0.7 * row));
+    }
+  }
+  for (const Excitation& excitation : all) {
+    CAPTURE(static_cast<int>(excitation.kind));
+    Scene scene = damper(60);
+    scene.excitation = excitation;
+    check_cut(scene, 3000, 5);
+    if (excitation.quantity == TableQuantity::force) continue;
+    scene.structure.reset(); // the enclosure's own motion
+    check_cut(scene, 3000, 5);
+  }
+}
+
+TEST_CASE("a state is refused if the table of its excitation has become another") {
+  Scene scene = damper(20);
+  scene.excitation = {};
+  scene.excitation.kind = ExcitationKind::table;
+  scene.excitation.times = {0.0, 0.1, 0.2, 0.5};
+  scene.excitation.values = {0.0, 1.0, 0.0, 1.0};
+  Simulation run(scene, with_threads(1));
+  go(run, 10);
+  const RunState state = run.state();
+  CHECK_NOTHROW(Simulation(scene, state, with_threads(1)));
+  scene.excitation.values[3] = 1.5;
+  CHECK_THROWS_AS(Simulation(scene, state, with_threads(1)), StateError);
+}
+
+TEST_CASE("a chirp keeps its sweep when the run goes on beyond its first end") {
+  Scene scene = bare_structure();
+  scene.excitation = {};
+  scene.excitation.kind = ExcitationKind::chirp;
+  scene.excitation.force = 0.5;
+  scene.excitation.start_frequency = 10.0;
+  scene.excitation.end_frequency = 20.0;
+  scene.time.step = 1.0e-3;
+  scene.time.duration = 1.0;
+  Simulation first(scene);
+  go(first, 500);
+  first.end_at(2000);
+  Simulation second(scene, first.state());
+  go(first, 1500);
+  go(second, 1500);
+  CHECK(differences(first.state(), second.state()) == "");
+  scene.excitation.sweep_duration = 1.0;
+  scene.time.duration = 2.0;
+  Simulation whole(scene);
+  go(whole, 2000);
+  CHECK(whole.state().enclosure_displacement == first.state().enclosure_displacement);
 }
 
 TEST_CASE("a state put back goes on by the same bits: 25,000 granules in several segments, 1 and 2 threads") {

@@ -64,8 +64,8 @@ TEST_CASE("the plan of a damper") {
   CHECK(plan.window == std::array<double, 2>{3.5, 7.0});
   CHECK(plan.effects ==
         Names{"hertz", "tsuji", "coulomb", "rotation", "gravity", "box", "structure", "harmonic", "energy"});
-  for (const char* name :
-       {"spring", "linear", "polydisperse", "materials", "cylinder", "prescribed", "audit", "verlet", "mixed"})
+  for (const char* name : {"spring", "linear", "polydisperse", "materials", "cylinder", "prescribed", "base", "chirp",
+                           "random", "impulse", "table", "audit", "verlet", "mixed"})
     CHECK(has(plan.effects_left_out, name));
   CHECK(plan.time_step * static_cast<double>(plan.steps) == doctest::Approx(7.0).epsilon(1e-15));
   CHECK(plan.skin_tuned);
