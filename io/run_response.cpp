@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <numbers>
+#include <tuple>
 
 namespace grandamp {
 namespace {
@@ -25,8 +26,13 @@ std::function<std::complex<double>(double)> oscillator(const Structure& structur
 Drive drive_of(const Scene& scene) {
   if (!scene.structure)
     throw UsageError("no frequency response: the scene has no [structure] that could answer a force");
-  Drive drive;
-  switch (scene.excitation.kind) {
+  const Excitation& e = scene.excitation;
+  Drive drive{ResponseMethod::transient, 0.0, std::numeric_limits<double>::infinity(), 0.0};
+  if (e.period) {
+    drive.method = ResponseMethod::periodic;
+    drive.period = *e.period;
+  }
+  switch (e.kind) {
   case ExcitationKind::none:
     throw UsageError("no frequency response: the vibration is free, without a force; `export DIR decay` tells of its "
                      "damping");
@@ -35,6 +41,23 @@ Drive drive_of(const Scene& scene) {
                      "random force, or step through frequencies with `grandamp sweep`");
   case ExcitationKind::prescribed:
     throw UsageError("no frequency response: the motion is prescribed, there is no force on a structure");
+  case ExcitationKind::base:
+    throw UsageError("no frequency response: the foundation moves at one frequency; use a table of its motion");
+  case ExcitationKind::chirp:
+    std::tie(drive.low, drive.high) = std::minmax(e.start_frequency, e.end_frequency);
+    break;
+  case ExcitationKind::random:
+    if (!e.period) drive.method = ResponseMethod::welch;
+    drive.low = e.band[0];
+    drive.high = e.band[1];
+    break;
+  case ExcitationKind::impulse:
+    break;
+  case ExcitationKind::table:
+    // A force that is over by half of the run leaves its answer to die; any other, and a motion, goes on.
+    if (e.quantity != TableQuantity::force || e.times.back() > 0.5 * scene.time.duration)
+      drive.method = ResponseMethod::welch;
+    break;
   }
   return drive;
 }

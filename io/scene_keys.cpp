@@ -32,7 +32,7 @@ constexpr std::array<std::string_view, 11> contact_pair{
     "poisson"};
 constexpr std::array<std::string_view, 6> structure{"mass",      "stiffness",    "damping",
                                                     "direction", "displacement", "velocity"};
-constexpr std::array<std::string_view, 19> excitation{"kind",
+constexpr std::array<std::string_view, 20> excitation{"kind",
                                                       "static_deflection",
                                                       "force",
                                                       "frequency",
@@ -44,6 +44,7 @@ constexpr std::array<std::string_view, 19> excitation{"kind",
                                                       "end_frequency",
                                                       "sweep",
                                                       "sweep_duration",
+                                                      "period",
                                                       "force_rms",
                                                       "band",
                                                       "seed",
