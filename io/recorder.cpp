@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <utility>
 
@@ -212,30 +213,34 @@ void Recorder::tell_progress() {
 
 namespace {
 
-/// response.csv, .unv, .svg of a run that was driven over a band, decay.csv, .svg of a free vibration. What stands in
-/// the way of a response does not make the run a failure: it is told, and stands in the summary.
-std::optional<FrequencyResponse> write_response_files(RunRecord& record, const RunFolder& files,
-                                                      const RunSceneOptions& options) {
+/// Of a run that was driven over a band. What stands in the way of it does not make the run a failure: it is told, and
+/// stands in the summary.
+std::optional<FrequencyResponse> response_of(RunRecord& record, const RunFolder& files,
+                                             const RunSceneOptions& options) {
   const Scene& scene = record.plan->scene;
-  if (record.status != RunStatus::done || !scene.structure) return std::nullopt;
-  if (scene.excitation.kind == ExcitationKind::none && !record.response.cycles.empty()) {
-    replace_file(files.file("decay.csv"), decay_csv(record.response.cycles));
-    replace_file(files.file("decay.svg"), decay_svg(record.response.cycles, scene.title, *scene.structure));
-  }
-  if (!gives_response(scene)) return std::nullopt;
+  if (record.status != RunStatus::done || !gives_response(scene)) return std::nullopt;
   try {
     FrequencyResponse response = run_response(scene, read_history(files.results(), response_columns));
-    const std::time_t now = std::time(nullptr);
-    for (const char* name : {"response.csv", "response.unv", "response.svg"})
-      write_response(response, scene, files.file(name), now);
-    if (options.warning)
-      for (const std::string& note : response.notes) options.warning("frequency response: " + note);
+    for (const std::string& note : response.notes)
+      if (options.warning) options.warning("frequency response: " + note);
     return response;
   } catch (const UsageError& error) {
     record.no_frequency_response = error.what();
     if (options.warning) options.warning(error.what());
     return std::nullopt;
   }
+}
+
+/// After the summary: a disk that is full by now does not cost the run that.
+void write_response_files(const RunRecord& record, const RunFolder& files) {
+  const Scene& scene = record.plan->scene;
+  if (record.frequency_response != nullptr)
+    for (const char* name : {"response.csv", "response.unv", "response.svg"})
+      write_response(*record.frequency_response, scene, files.file(name), std::time(nullptr));
+  const std::vector<VibrationCycle>& cycles = record.response.cycles;
+  if (record.status != RunStatus::done || scene.excitation.kind != ExcitationKind::none || cycles.empty()) return;
+  replace_file(files.file("decay.csv"), decay_csv(cycles));
+  replace_file(files.file("decay.svg"), decay_svg(cycles, scene.title, scene.structure.value_or(Structure{})));
 }
 
 } // namespace
@@ -245,7 +250,7 @@ RunResult record_run(Simulation& simulation, ResultsWriter& results, const RunFo
   Recorder recorder(simulation, results, options, std::move(setup));
   recorder.go();
   RunRecord& record = recorder.record;
-  const std::optional<FrequencyResponse> response = write_response_files(record, files, options);
+  const std::optional<FrequencyResponse> response = response_of(record, files, options);
   if (response) record.frequency_response = &*response;
   RunResult result;
   result.status = record.status;
@@ -255,6 +260,7 @@ RunResult record_run(Simulation& simulation, ResultsWriter& results, const RunFo
   if (simulation.plan().scene.structure) result.response = record.response;
   result.summary = summary_text(record);
   replace_file(files.summary(), result.summary);
+  write_response_files(record, files);
   if (record.profile != nullptr) replace_file(files.trace(), trace_text(*record.profile));
   return result;
 }
