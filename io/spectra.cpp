@@ -94,7 +94,19 @@ Spectra estimate_spectra(const EvenRecord& record, const Segmentation& segmentat
 }
 
 double hann_bias(double bandwidth, double segment) {
-  return -4.0 / (3.0 * bandwidth * bandwidth * segment * segment);
+  constexpr double pi = std::numbers::pi;
+  const double decay = pi * bandwidth * segment;
+  // What is missing of the correlation at a lag, a share u of the segment; without it the integral is 1 - exp(-decay).
+  const auto missing = [](double u) {
+    return 1.0 - (2.0 / 3.0 * (1.0 - u) * (1.0 + 0.5 * std::cos(2.0 * pi * u)) + std::sin(2.0 * pi * u) / (2.0 * pi));
+  };
+  constexpr int intervals = 2000; // Simpson's rule
+  double sum = 0.0;
+  for (int k = 0; k <= intervals; ++k) {
+    const double u = static_cast<double>(k) / intervals;
+    sum += (k == 0 || k == intervals ? 1.0 : k % 2 == 1 ? 4.0 : 2.0) * decay * missing(u) * std::exp(-decay * u);
+  }
+  return -std::exp(-decay) - sum / (3.0 * intervals);
 }
 
 } // namespace grandamp

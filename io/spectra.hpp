@@ -46,8 +46,9 @@ struct Spectra {
 /// segment.
 Spectra estimate_spectra(const EvenRecord& record, const Segmentation& segmentation, double low, double high);
 
-/// By how much H1 of a Hann window is too low at the top of a resonance, over it, to leading order: the window's second
-/// moment, 1/(3 T^2), times half the curvature of the response, 8/B^2. bandwidth B: at half power, Hz; segment T, s.
+/// By how much H1 of a Hann window is too low at the top of a resonance, over it: the mean of 1/(1 + 2 i f/B) over the
+/// window's power spectrum, in lags: 1 - pi B int_0^T rho(t) exp(-pi B t) dt, rho being the window's correlation with
+/// itself. For long segments -4/3 (B T)^-2. bandwidth B: at half power, Hz; segment T, s.
 double hann_bias(double bandwidth, double segment);
 
 } // namespace grandamp

@@ -128,7 +128,7 @@ TEST_CASE("segments that are too short lower the peak as the bias says, and that
   for (std::size_t k = 0; k < found.response.size(); ++k)
     if (std::abs(found.spectra.frequency[k] - 15.915) < std::abs(found.spectra.frequency[nearest] - 15.915))
       nearest = k;
-  CHECK(top(nearest) == doctest::Approx(hann_bias(oscillator.bandwidth(), 16.0)).epsilon(0.3));
+  CHECK(top(nearest) == doctest::Approx(hann_bias(oscillator.bandwidth(), 16.0)).epsilon(0.25));
   REQUIRE(!found.notes.empty());
   CHECK(has(found.notes.back(), "lowers the peak"));
 }

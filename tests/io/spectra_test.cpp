@@ -105,6 +105,26 @@ TEST_CASE("coherence is the share of power that the force explains, and H1 scatt
   }
 }
 
+TEST_CASE("the bias of a Hann window at a resonance is the mean of the resonance over the window's spectrum") {
+  CHECK(hann_bias(0.3, 200.0) == doctest::Approx(-4.0 / 3.0 / (60.0 * 60.0)).epsilon(0.01));
+  for (const double bandwidth : {0.05, 0.3, 1.0, 5.0}) {
+    // The window's power spectrum by a sum of its samples, at 32 places per line.
+    constexpr double segment = 4.0;
+    constexpr int samples = 64, lines = 1024;
+    double power = 0.0, seen = 0.0;
+    for (int k = -lines; k <= lines; ++k) {
+      const double f = k / (32.0 * segment);
+      std::complex<double> sum = 0.0;
+      for (int n = 0; n < samples; ++n)
+        sum += (0.5 - 0.5 * std::cos(2.0 * pi * n / samples)) * std::polar(1.0, -2.0 * pi * f * segment * n / samples);
+      if (std::abs(f * segment) > 0.5 * samples) continue; // its own mirror image
+      power += std::norm(sum);
+      seen += std::norm(sum) / (1.0 + std::pow(2.0 * f / bandwidth, 2));
+    }
+    CHECK(hann_bias(bandwidth, segment) == doctest::Approx(seen / power - 1.0).epsilon(0.02));
+  }
+}
+
 TEST_CASE("one segment has a coherence of one by construction, and lines without displacement have none") {
   const Spectra one = estimate_spectra(noise(256, 1.0, 2.0, 5.0, 2), {256, 256, SpectralWindow::rectangular}, 0.1, 0.4);
   for (std::size_t k = 0; k < one.frequency.size(); ++k) CHECK(one.coherence(k) == doctest::Approx(1.0));
