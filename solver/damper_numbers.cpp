@@ -1,5 +1,6 @@
 #include "solver/damper_numbers.hpp"
 
+#include "solver/excitation_signal.hpp"
 #include "solver/measures.hpp"
 
 #include <limits>
@@ -11,20 +12,30 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double pi = std::numbers::pi;
 
+/// At the rows of a table of motion, m/s^2.
+double largest_acceleration(const Excitation& table) {
+  const PiecewisePolynomial motion = make_motion(table);
+  double largest = 0.0;
+  for (const double time : table.times) largest = std::max(largest, std::abs(motion.at({time, 0.0}).acceleration));
+  return largest;
+}
+
 /// Largest acceleration of the enclosure without granules, m/s^2: in the steady state where it is forced, else from
 /// rest at its first displacement or at its first speed.
 double bare_acceleration(const Scene& scene) {
   const double w = 2.0 * pi * scene.excitation.frequency;
   if (scene.excitation.kind == ExcitationKind::prescribed)
     return scene.excitation.velocity ? 0.0 : std::abs(scene.excitation.amplitude) * w * w;
-  if (!scene.structure) return none;
+  if (!scene.structure) return is_motion_table(scene.excitation) ? largest_acceleration(scene.excitation) : none;
   const Structure& s = *scene.structure;
   if (scene.excitation.kind == ExcitationKind::none) {
     const double natural = std::sqrt(s.stiffness / s.mass);
     return natural * std::hypot(natural * s.displacement, s.velocity);
   }
+  const bool sine = scene.excitation.kind == ExcitationKind::harmonic || scene.excitation.kind == ExcitationKind::base;
+  if (!sine) return none; // no steady state
   const double impedance = std::hypot(s.stiffness - s.mass * w * w, s.damping * w);
-  return impedance > 0.0 ? std::abs(driving_force(scene)) * w * w / impedance : none;
+  return impedance > 0.0 ? largest_force(scene) * w * w / impedance : none;
 }
 
 /// Along gravity, or else along the motion: what the bed leaves free of the enclosure, m.
@@ -33,7 +44,7 @@ double clearance(const Scene& scene, double fill_fraction) {
   if (norm(direction) == 0.0) {
     if (scene.structure)
       direction = scene.structure->direction;
-    else if (scene.excitation.kind == ExcitationKind::prescribed)
+    else if (scene.excitation.kind == ExcitationKind::prescribed || is_motion_table(scene.excitation))
       direction = scene.excitation.direction;
     else
       return none;
