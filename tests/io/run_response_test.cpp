@@ -1,5 +1,4 @@
 // Runs that are driven over a band, and what their folders then tell of the frequency response; free decay.
-#include "io/run.hpp"
 #include "tests/io/io_support.hpp"
 #include "tests/support/oscillator_record.hpp"
 #include "tests/support/scene_texts.hpp"
