@@ -1,12 +1,15 @@
 #include "io/recorder.hpp"
 
+#include "io/decay_files.hpp"
 #include "io/profile_report.hpp"
+#include "io/run_response.hpp"
 #include "io/text_file.hpp"
 #include "io/version.hpp"
 #include "solver/several_modes.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <utility>
 
@@ -210,11 +213,47 @@ void Recorder::tell_progress() {
   options_.progress(progress);
 }
 
+namespace {
+
+/// Of a run that was driven over a band. What stands in the way of it does not make the run a failure: it is told, and
+/// stands in the summary.
+std::optional<FrequencyResponse> response_of(RunRecord& record, const RunFolder& files,
+                                             const RunSceneOptions& options) {
+  const Scene& scene = record.plan->scene;
+  if (record.status != RunStatus::done || !gives_response(scene)) return std::nullopt;
+  try {
+    FrequencyResponse response = run_response(scene, read_history(files.results(), response_columns));
+    for (const std::string& note : response.notes)
+      if (options.warning) options.warning("frequency response: " + note);
+    return response;
+  } catch (const UsageError& error) {
+    record.no_frequency_response = error.what();
+    if (options.warning) options.warning(error.what());
+    return std::nullopt;
+  }
+}
+
+/// After the summary: a disk that is full by now does not cost the run that.
+void write_response_files(const RunRecord& record, const RunFolder& files) {
+  const Scene& scene = record.plan->scene;
+  if (record.frequency_response != nullptr)
+    for (const char* name : {"response.csv", "response.unv", "response.svg"})
+      write_response(*record.frequency_response, scene, files.file(name), std::time(nullptr));
+  const std::vector<VibrationCycle>& cycles = record.response.cycles;
+  if (record.status != RunStatus::done || scene.excitation.kind != ExcitationKind::none || cycles.empty()) return;
+  replace_file(files.file("decay.csv"), decay_csv(cycles));
+  replace_file(files.file("decay.svg"), decay_svg(cycles, scene.title, scene.structure.value_or(Structure{})));
+}
+
+} // namespace
+
 RunResult record_run(Simulation& simulation, ResultsWriter& results, const RunFolder& files,
                      const RunSceneOptions& options, RecorderSetup setup) {
   Recorder recorder(simulation, results, options, std::move(setup));
   recorder.go();
-  const RunRecord& record = recorder.record;
+  RunRecord& record = recorder.record;
+  const std::optional<FrequencyResponse> response = response_of(record, files, options);
+  if (response) record.frequency_response = &*response;
   RunResult result;
   result.status = record.status;
   result.message = record.message;
@@ -223,6 +262,7 @@ RunResult record_run(Simulation& simulation, ResultsWriter& results, const RunFo
   if (simulation.plan().scene.structure) result.response = record.response;
   result.summary = summary_text(record);
   replace_file(files.summary(), result.summary);
+  write_response_files(record, files);
   if (record.profile != nullptr) replace_file(files.trace(), trace_text(*record.profile));
   return result;
 }

@@ -89,7 +89,8 @@ private:
   bool out_of_time_ = false;
 };
 
-/// Runs a Recorder to its end and writes the summary, and the trace if there is a profile.
+/// Runs a Recorder to its end and writes the summary, the frequency response or the decay if the run gives one, and the
+/// trace if there is a profile.
 RunResult record_run(Simulation& simulation, ResultsWriter& results, const RunFolder& files,
                      const RunSceneOptions& options, RecorderSetup setup);
 

@@ -74,8 +74,8 @@ struct History {
 };
 
 /// Reads results.h5, and of a run that goes on or was killed also what the logs beside it hold beyond it.
-/// Throws FileError.
-History read_history(const std::filesystem::path& path);
+/// `only`: these columns; empty: all. Throws FileError.
+History read_history(const std::filesystem::path& path, const std::vector<std::string>& only = {});
 Snapshot read_final_granules(const std::filesystem::path& path);
 /// The snapshot nearest to `time`, s; the granules at the end count as one, where the run came to its end. Nothing if
 /// the run took no snapshots.

@@ -20,34 +20,39 @@ std::optional<RecordLog> log_beside(const fs::path& results, const char* name, s
   return RecordLog::open(path, kind, 0, true);
 }
 
-void append_rows(History& history, const RecordLog& log) {
-  const std::size_t width = history.columns.size();
+/// `places`: of the history's columns among the log's `width`.
+void append_rows(History& history, const std::vector<std::size_t>& places, std::size_t width, const RecordLog& log) {
   if (log.record_bytes() != width * sizeof(double))
     throw FileError(log.path().string() + ": does not belong to the results beside it: its rows have another width");
   const auto known = static_cast<std::int64_t>(history.columns.front().size());
   if (log.count() <= known) return;
   std::vector<double> block(static_cast<std::size_t>(log.count() - known) * width);
   log.read(known, log.count() - known, block.data());
-  for (std::size_t c = 0; c < width; ++c)
-    for (std::size_t at = c; at < block.size(); at += width) history.columns[c].push_back(block[at]);
+  for (std::size_t c = 0; c < places.size(); ++c)
+    for (std::size_t at = places[c]; at < block.size(); at += width) history.columns[c].push_back(block[at]);
 }
 
 } // namespace
 
-History read_history(const fs::path& path) {
+History read_history(const fs::path& path, const std::vector<std::string>& only) {
   const hdf5::File file = hdf5::File::open(path);
   if (!file.has("/history")) throw FileError(path.string() + ": holds no histories; not a results file of grandamp");
   History history;
+  std::vector<std::size_t> places;
+  std::size_t width = 0;
   for (const HistoryColumn& column : history_columns) {
     const std::string name = std::string("/history/") + column.name;
     if (!file.has(name)) continue;
+    const std::size_t place = width++;
+    if (!only.empty() && std::find(only.begin(), only.end(), column.name) == only.end()) continue;
+    places.push_back(place);
     history.names.emplace_back(column.name);
     history.columns.push_back(file.read_doubles(name));
     if (history.columns.back().size() != history.columns.front().size())
       throw FileError(path.string() + ": /history is damaged: its members differ in length");
   }
   if (const auto log = log_beside(path, "history.part", history_kind); log && !history.columns.empty())
-    append_rows(history, *log);
+    append_rows(history, places, width, *log);
   return history;
 }
 

@@ -102,8 +102,10 @@ void RunFolder::unlock() noexcept {
 }
 
 void RunFolder::remove_leftovers() noexcept {
-  for (const char* name : {"checkpoint.next.h5.new", "results.h5.new", "history.part.new", "snapshots.part.new",
-                           "snapshots.xdmf.new", "scene.toml.new", "summary.json.new", "trace.json.new", probe_name}) {
+  for (const char* name :
+       {"checkpoint.next.h5.new", "results.h5.new", "history.part.new", "snapshots.part.new", "snapshots.xdmf.new",
+        "scene.toml.new", "summary.json.new", "trace.json.new", "response.csv.new", "response.unv.new",
+        "response.svg.new", "decay.csv.new", "decay.svg.new", probe_name}) {
     std::error_code ignored;
     fs::remove(folder_ / name, ignored);
   }
@@ -120,8 +122,9 @@ void RunFolder::begin(const std::string& scene_text) {
 }
 
 void RunFolder::forget_summary() {
-  remove_earlier(summary());
-  remove_earlier(trace());
+  for (const char* name :
+       {"summary.json", "trace.json", "response.csv", "response.unv", "response.svg", "decay.csv", "decay.svg"})
+    remove_earlier(folder_ / name);
 }
 
 void RunFolder::abandon() noexcept {

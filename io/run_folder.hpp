@@ -24,12 +24,15 @@ public:
   std::filesystem::path summary() const { return folder_ / "summary.json"; }
   std::filesystem::path results() const { return folder_ / "results.h5"; }
   std::filesystem::path trace() const { return folder_ / "trace.json"; }
+  /// "response" or "decay", with an ending.
+  std::filesystem::path file(const char* name) const { return folder_ / name; }
   CheckpointFiles checkpoints() const { return CheckpointFiles(folder_); }
 
   /// Removes the files of an earlier run, and nothing else, and writes scene.toml: once, and never in the folder of a
   /// run that goes on. Throws FileError.
   void begin(const std::string& scene_text);
-  /// A run that is to change what summary.json and trace.json tell of must not leave them if it is killed.
+  /// A run that is to change what summary.json, trace.json, response.* and decay.* tell of must not leave them if it is
+  /// killed.
   void forget_summary();
   /// Removes the folder again if it was made for this run and is empty.
   void abandon() noexcept;

@@ -95,19 +95,20 @@ void read_base(TableReader& root, TableReader& table, Scene& scene) {
 
 void read_chirp(TableReader& root, TableReader& table, Scene& scene) {
   refuse_others(table, "chirp",
-                {"static_deflection", "force", "start_frequency", "end_frequency", "sweep", "sweep_duration"},
-                "static_deflection or force, start_frequency, end_frequency, sweep, sweep_duration");
+                {"static_deflection", "force", "start_frequency", "end_frequency", "sweep", "sweep_duration", "period"},
+                "static_deflection or force, start_frequency, end_frequency, sweep, sweep_duration, period");
   Excitation& excitation = scene.excitation;
   excitation.start_frequency = needed(table, "start_frequency", "where the sweep begins", "Hz, above 0", positive);
   excitation.end_frequency = needed(table, "end_frequency", "where the sweep ends", "Hz, above 0", positive);
   excitation.sweep = table.choice<Sweep>("sweep", {{"linear", Sweep::linear}, {"logarithmic", Sweep::logarithmic}})
                          .value_or(Sweep::linear);
   excitation.sweep_duration = table.number("sweep_duration", positive);
+  excitation.period = table.number("period", positive);
   read_strength(root, table, scene);
 }
 
 void read_random(TableReader& root, TableReader& table, Scene& scene) {
-  refuse_others(table, "random", {"force_rms", "band", "seed"}, "force_rms, band, seed");
+  refuse_others(table, "random", {"force_rms", "band", "seed", "period"}, "force_rms, band, seed, period");
   Excitation& excitation = scene.excitation;
   excitation.seed =
       static_cast<std::uint64_t>(table.integer("seed", 0, std::numeric_limits<std::int64_t>::max()).value_or(0));
@@ -119,6 +120,7 @@ void read_random(TableReader& root, TableReader& table, Scene& scene) {
           "band", "out of range",
           fmt::format("[from, to] in Hz, 0 <= from < to, and to - from at least {} of to", least_relative_band));
   }
+  excitation.period = table.number("period", positive);
   if (!has_structure(root, table, {"force_rms"})) return;
   excitation.force_rms = needed(table, "force_rms", "how strong it is", "N, at least 0", not_negative);
 }

@@ -58,6 +58,36 @@ Json structure_json(const RunRecord& record) {
   return structure;
 }
 
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json frequency_response_json(const FrequencyResponse& response) {
+  const Spectra& spectra = response.spectra;
+  Json told{{"method", name(response.method)},
+            {"band", {spectra.frequency.front(), spectra.frequency.back()}},
+            {"resolution", spectra.resolution},
+            {"settling", response.settling},
+            {"segment", response.segment},
+            {"averages", spectra.segments},
+            {"peak_frequency", spectra.frequency[response.peak]},
+            {"peak_magnitude", std::abs(response.response[response.peak])},
+            {"mean_coherence", number(response.mean_coherence())},
+            {"random_error", number(response.mean_random_error())},
+            {"bias", response.bias}};
+  if (response.fit.found)
+    told["fit"] = {{"natural_frequency", response.fit.natural_frequency},
+                   {"damping_ratio", response.fit.damping_ratio},
+                   {"peak_frequency", response.fit.peak_frequency},
+                   {"peak_magnitude", response.fit.peak_magnitude},
+                   {"mass", response.fit.mass},
+                   {"stiffness", response.fit.stiffness},
+                   {"damping", response.fit.damping},
+                   {"lines", response.fit.lines}};
+  told["notes"] = response.notes;
+  return told;
+}
+
 Json energy_json(const RunRecord& record) {
   const Ledger& ledger = record.end.ledger;
   Json energy{{"initial", stored_json(record.initial.stored)}};
@@ -142,6 +172,10 @@ std::string summary_text(const RunRecord& record) {
   summary["effects"] = plan.effects;
   summary["effects_left_out"] = plan.effects_left_out;
   if (plan.scene.structure) summary["structure"] = structure_json(record);
+  if (record.frequency_response != nullptr)
+    summary["response"] = frequency_response_json(*record.frequency_response);
+  else if (!record.no_frequency_response.empty())
+    summary["response"] = {{"message", record.no_frequency_response}};
   if (plan.scene.output.energy) summary["energy"] = energy_json(record);
   summary["verlet"] = {{"builds", record.verlet.builds},
                        {"mean_interval", record.verlet.mean_interval},

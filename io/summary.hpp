@@ -1,6 +1,7 @@
 // summary.json: a run in a page. The keys are told in io/FORMAT.md.
 #pragma once
 
+#include "io/frequency_response.hpp"
 #include "io/run.hpp"
 #include "solver/profile.hpp"
 #include "solver/simulation.hpp"
@@ -25,7 +26,9 @@ struct RunRecord {
   VerletStatistics verlet;
   GuardStatistics guards;
   ResponseStatistics response;
-  const Profile* profile = nullptr; ///< null: none was asked for
+  const Profile* profile = nullptr;                      ///< null: none was asked for
+  const FrequencyResponse* frequency_response = nullptr; ///< null: the run gives none
+  std::string no_frequency_response;                     ///< why, of a run that should
 };
 
 /// What is left of the energy balance from t = 0 to `end`, over the largest of |work in| and the kinetic, elastic and

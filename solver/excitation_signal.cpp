@@ -1,6 +1,7 @@
 #include "solver/excitation_signal.hpp"
 
 #include "solver/measures.hpp"
+#include "solver/periodic_random_force.hpp"
 #include "solver/random_force.hpp"
 
 #include <algorithm>
@@ -24,13 +25,16 @@ double fraction_of(double factor, Instant instant) {
 class Chirp : public ForceSignal {
 public:
   Chirp(const Excitation& e, double amplitude, double duration)
-      : amplitude_(amplitude), start_(e.start_frequency), duration_(duration),
+      : amplitude_(amplitude), start_(e.start_frequency), duration_(duration), period_(e.period.value_or(infinity)),
         logarithm_(e.sweep == Sweep::logarithmic ? std::log(e.end_frequency / e.start_frequency) : 0.0),
         rate_(logarithm_ == 0.0 ? (e.end_frequency - e.start_frequency) / duration : 0.0) {}
 
   double at(Instant instant) const override {
+    if (instant.time + instant.rest < 0.0) return 0.0;
+    if (const double sweeps = begun(instant.time + instant.rest); sweeps > 0.0)
+      instant.time = std::fma(-sweeps, period_, instant.time);
     const double time = instant.time + instant.rest;
-    if (time < 0.0 || time > duration_) return 0.0;
+    if (time > duration_) return 0.0;
     double cycles = 0.0;
     if (logarithm_ != 0.0) {
       // The frequency grows as start exp(logarithm t / duration).
@@ -46,10 +50,20 @@ public:
     return amplitude_ * std::sin(2.0 * pi * cycles);
   }
 
-  double next_break(double time) const override { return time < 0.0 ? 0.0 : time < duration_ ? duration_ : infinity; }
+  double next_break(double time) const override {
+    if (time < 0.0) return 0.0;
+    if (std::isinf(period_)) return time < duration_ ? duration_ : infinity;
+    for (double sweep = begun(time);; ++sweep)
+      for (const double jump : {sweep * period_ + duration_, (sweep + 1.0) * period_})
+        if (jump > time) return jump;
+  }
 
 private:
+  /// Sweeps that were over before the one of that time.
+  double begun(double time) const { return std::isinf(period_) ? 0.0 : std::floor(time / period_); }
+
   double amplitude_, start_, duration_;
+  double period_;    ///< s from one sweep to the next; infinite: there is one
   double logarithm_; ///< of end over start; 0: linear
   double rate_;      ///< Hz/s, linear
 };
@@ -103,8 +117,10 @@ std::unique_ptr<ForceSignal> make_force_signal(const Scene& scene) {
   const Excitation& e = scene.excitation;
   switch (e.kind) {
   case ExcitationKind::chirp:
-    return std::make_unique<Chirp>(e, driving_force(scene), e.sweep_duration.value_or(scene.time.duration));
+    return std::make_unique<Chirp>(e, driving_force(scene),
+                                   e.sweep_duration.value_or(e.period.value_or(scene.time.duration)));
   case ExcitationKind::random:
+    if (e.period) return std::make_unique<PeriodicRandomForce>(e.force_rms, e.band, *e.period, scene.seed, e.seed);
     return std::make_unique<RandomForce>(e.force_rms, e.band, scene.seed, e.seed);
   case ExcitationKind::impulse:
     return std::make_unique<Impulse>(e);

@@ -166,7 +166,7 @@ Plan make_plan(const Scene& scene) {
   // A run that goes on beyond its end keeps the sweep that it began with.
   Excitation& excitation = plan.scene.excitation;
   if (excitation.kind == ExcitationKind::chirp && !excitation.sweep_duration)
-    excitation.sweep_duration = scene.time.duration;
+    excitation.sweep_duration = excitation.period.value_or(scene.time.duration);
   plan.granules = granule_count(scene);
   const RadiusRange radii = radius_range(scene);
   plan.smallest_radius = radii.smallest;

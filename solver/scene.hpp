@@ -142,6 +142,7 @@ struct Excitation {
   std::optional<double> sweep_duration; ///< chirp, s; left out: the whole run (make_plan fills it in)
 
   double force_rms = 0.0;               ///< random, N
+  std::optional<double> period;         ///< chirp, random: the force repeats itself after so long, s; left out: never
   std::array<double, 2> band{0.0, 0.0}; ///< random, Hz
   std::uint64_t seed = 0;               ///< random: another number, another signal of the same scene
 

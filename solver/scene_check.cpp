@@ -2,6 +2,7 @@
 
 #include "solver/excitation_signal.hpp"
 #include "solver/measures.hpp"
+#include "solver/periodic_random_force.hpp"
 #include "solver/several_modes.hpp"
 
 #include <fmt/format.h>
@@ -222,6 +223,17 @@ void check_prescribed(Faults& faults, const Scene& scene) {
   }
 }
 
+/// A force that repeats itself is made of the multiples of 1/period in its band.
+void check_lines(Faults& faults, const Excitation& e) {
+  if (!(e.band[1] > e.band[0])) return; // told already
+  const double lines = std::floor((e.band[1] - e.band[0]) * *e.period);
+  if (lines >= 3.0 && lines <= static_cast<double>(PeriodicRandomForce::most_lines)) return;
+  faults.add("excitation.period", fmt::format("{:g}", *e.period),
+             fmt::format("the band holds {:.6g} of its multiples of 1/period", lines),
+             fmt::format("a period from {:.6g} to {:.6g} s", 4.0 / (e.band[1] - e.band[0]),
+                         static_cast<double>(PeriodicRandomForce::most_lines) / (e.band[1] - e.band[0])));
+}
+
 void check_excitation(Faults& faults, const Scene& scene) {
   const Excitation& e = scene.excitation;
   const bool needs_structure = e.kind != ExcitationKind::none && e.kind != ExcitationKind::prescribed &&
@@ -250,6 +262,10 @@ void check_excitation(Faults& faults, const Scene& scene) {
     faults.positive("excitation.start_frequency", e.start_frequency);
     faults.positive("excitation.end_frequency", e.end_frequency);
     if (e.sweep_duration) faults.positive("excitation.sweep_duration", *e.sweep_duration);
+    if (e.period && faults.positive("excitation.period", *e.period) && e.sweep_duration &&
+        *e.sweep_duration > *e.period)
+      faults.add("excitation.period", fmt::format("{:g}", *e.period), "shorter than a sweep",
+                 fmt::format("at least sweep_duration, {:g} s", *e.sweep_duration));
     check_driving_force(faults, e);
     break;
   case ExcitationKind::random:
@@ -258,6 +274,8 @@ void check_excitation(Faults& faults, const Scene& scene) {
         !(e.band[1] - e.band[0] >= least_relative_band * e.band[1]))
       faults.add("excitation.band", fmt::format("[{:g}, {:g}]", e.band[0], e.band[1]), "not a band",
                  fmt::format("from < to, and to - from at least {:g} of to", least_relative_band));
+    else if (e.period && faults.positive("excitation.period", *e.period))
+      check_lines(faults, e);
     break;
   case ExcitationKind::impulse:
     if (e.force)

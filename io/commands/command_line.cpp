@@ -184,13 +184,24 @@ int command_line(int argc, char** argv) {
 
   ExportArguments exported;
   bool export_quiet = false;
-  CLI::App* const export_app = app.add_subcommand("export", "Histories or granules of a run as CSV");
+  CLI::App* const export_app =
+      app.add_subcommand("export", "Histories, granules, frequency response or decay of a run");
   export_app->add_option("DIR", exported.folder, "Folder of a run")->required();
-  export_app->add_option("WHAT", exported.what, "history or granules")
+  export_app->add_option("WHAT", exported.what, "history, granules, response or decay")
       ->required()
-      ->check(CLI::IsMember({"history", "granules"}));
+      ->check(CLI::IsMember({"history", "granules", "response", "decay"}));
   export_app->add_option("--time", exported.time, "Of granules, s; default: the end")->type_name("T");
-  export_app->add_option("-o", exported.file, "The CSV file")->type_name("FILE")->required();
+  export_app->add_option("--settling", exported.settling, "Of a response: what is left out at the start, s")
+      ->type_name("S")
+      ->check(CLI::NonNegativeNumber);
+  export_app
+      ->add_option("--segment", exported.segment, "Of a response to a force without a period: Welch's segments, s")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  export_app
+      ->add_option("-o", exported.file, "FILE.csv; a response also .unv (universal file 58) or .svg, a decay .svg")
+      ->type_name("FILE")
+      ->required();
   add_quiet(*export_app, export_quiet);
 
   InspectArguments inspected;

@@ -63,8 +63,10 @@ struct StudyArguments {
 
 struct ExportArguments {
   std::filesystem::path folder;
-  std::string what;           ///< "history" or "granules"
-  std::optional<double> time; ///< s
+  std::string what;               ///< "history", "granules", "response" or "decay"
+  std::optional<double> time;     ///< of granules, s
+  std::optional<double> settling; ///< of a response, s
+  std::optional<double> segment;  ///< of a response, s
   std::filesystem::path file;
 };
 

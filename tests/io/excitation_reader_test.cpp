@@ -43,6 +43,11 @@ TEST_CASE("excitations of every kind are read") {
   CHECK(random.force_rms == 2.0);
   CHECK(random.band == std::array<double, 2>{0.0, 50.0});
   CHECK(random.seed == 7);
+  CHECK_FALSE(random.period);
+  CHECK(excitation_of(on_a_structure, "kind = \"random\"\nforce_rms = 2\nband = [0, 50]\nperiod = 8\n").period == 8.0);
+  CHECK(
+      excitation_of(on_a_structure, "kind = \"chirp\"\nforce = 1\nstart_frequency = 2\nend_frequency = 5\nperiod = 8\n")
+          .period == 8.0);
   const Excitation impulse =
       excitation_of(on_a_structure, "kind = \"impulse\"\nforce = 3\nstart = 0.1\npulse_duration = 0.01\n");
   CHECK(impulse.kind == ExcitationKind::impulse);

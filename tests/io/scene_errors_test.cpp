@@ -249,7 +249,7 @@ const std::vector<BadScene> bad_scenes{
       "excitation.amplitude: missing: how far the foundation moves", "acceleration (its amplitude) in m/s^2"}},
     {"kind = \"harmonic\"",
      "kind = \"random\"",
-     {"excitation.frequency = 15.91: does not apply: the kind is \"random\"; allowed: force_rms, band, seed",
+     {"excitation.frequency = 15.91: does not apply: the kind is \"random\"; allowed: force_rms, band, seed, period",
       "excitation.band: missing", "excitation.force_rms: missing"}},
     {"kind = \"harmonic\"",
      "kind = \"impulse\"",

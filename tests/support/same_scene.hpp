@@ -26,7 +26,7 @@ inline auto values(const Structure& s) {
 inline auto values(const Excitation& e) {
   return std::tie(e.kind, e.static_deflection, e.force, e.frequency, e.amplitude, e.acceleration, e.velocity,
                   e.direction, e.start_frequency, e.end_frequency, e.sweep, e.sweep_duration, e.force_rms, e.band,
-                  e.seed, e.start, e.pulse_duration, e.quantity, e.interpolation, e.times, e.values);
+                  e.period, e.seed, e.start, e.pulse_duration, e.quantity, e.interpolation, e.times, e.values);
 }
 inline auto values(const TimeControl& t) {
   return std::tie(t.duration, t.steps_per_contact, t.step, t.impact_speed, t.integrator);
