@@ -22,7 +22,7 @@ std::string escaped(const std::string& text) {
       result += "&lt;";
     else if (c == '>')
       result += "&gt;";
-    else
+    else if (static_cast<unsigned char>(c) >= 0x20) // XML has no other control characters
       result += c;
   }
   return result;
@@ -31,7 +31,8 @@ std::string escaped(const std::string& text) {
 /// Values to places along one side of the frame.
 class Scale {
 public:
-  Scale(bool logarithmic, double from, double to) : logarithmic_(logarithmic), from_(from), to_(to) {}
+  Scale(const PlotAxis& axis, double from, double to)
+      : logarithmic_(axis.logarithmic), from_zero_(axis.from_zero), from_(from), to_(to) {}
 
   bool shows(double value) const { return std::isfinite(value) && (!logarithmic_ || value > 0.0); }
   void include(double value) {
@@ -45,8 +46,10 @@ public:
       low_ = std::pow(10.0, std::floor(std::log10(low_) * 2.0 + 1e-9) / 2.0) * 0.95;
       high_ = std::pow(10.0, std::ceil(std::log10(high_) * 2.0 - 1e-9) / 2.0) * 1.05;
     } else {
-      low_ = std::min(0.0, low_);
-      high_ = high_ > low_ ? high_ + 0.08 * (high_ - low_) : low_ + 1.0;
+      if (from_zero_) low_ = std::min(0.0, low_);
+      const double room = high_ > low_ ? 0.08 * (high_ - low_) : std::max(std::abs(low_), 1.0);
+      high_ += room;
+      if (low_ < 0.0 || !from_zero_) low_ -= room;
     }
   }
   double at(double value) const {
@@ -70,21 +73,21 @@ public:
   }
 
 private:
-  bool logarithmic_;
+  bool logarithmic_, from_zero_;
   double from_, to_;
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
 };
 
 class Drawing {
 public:
-  Drawing(const Plot& plot)
-      : plot_(plot), x_(plot.x.logarithmic, left, width - right), y_(plot.y.logarithmic, height - bottom, top) {
+  Drawing(const Plot& plot) : plot_(plot), x_(plot.x, left, width - right), y_(plot.y, height - bottom, top) {
     for (const PlotSeries& series : plot.series)
       for (const PlotPoint& point : series.points) {
         if (!shown(point)) continue;
         x_.include(point.x);
         y_.include(point.y);
         if (point.high > point.low) y_.include(point.high);
+        if (point.high > point.low && !plot.y.logarithmic) y_.include(point.low);
       }
     if (!plot.categories.empty()) {
       x_.include(-0.6);
@@ -101,14 +104,8 @@ public:
                     width, height);
     write(0.5 * width, 20.0, plot_.title, R"(text-anchor="middle" font-size="13")");
     frame();
-    double legend = top + 14.0;
-    for (const PlotSeries& series : plot_.series) {
-      draw(series);
-      if (series.name.empty()) continue;
-      mark(width - right - 12.0, legend - 4.0, series);
-      write(width - right - 22.0, legend, series.name, R"(text-anchor="end")");
-      legend += 15.0;
-    }
+    for (const PlotSeries& series : plot_.series) draw(series);
+    legend();
     return out_ + "</svg>\n";
   }
 
@@ -123,7 +120,34 @@ private:
                         y1, colour, thickness);
   }
 
+  /// Over the lines, on a ground that they only shine through.
+  void legend() {
+    std::size_t rows = 0, longest = 0;
+    for (const PlotSeries& series : plot_.series) {
+      if (series.name.empty()) continue;
+      ++rows;
+      longest = std::max(longest, series.name.size());
+    }
+    if (rows == 0) return;
+    const double reach = 30.0 + 5.8 * static_cast<double>(longest);
+    out_ +=
+        fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="white" fill-opacity="0.8"/>)",
+                    width - right - reach, top + 1.0, reach - 1.0, 15.0 * static_cast<double>(rows) + 6.0);
+    double y = top + 14.0;
+    for (const PlotSeries& series : plot_.series) {
+      if (series.name.empty()) continue;
+      mark(width - right - 12.0, y - 4.0, series);
+      write(width - right - 22.0, y, series.name, R"(text-anchor="end")");
+      y += 15.0;
+    }
+  }
+
   void frame() {
+    if (plot_.band) {
+      const double from = x_.at((*plot_.band)[0]), to = x_.at((*plot_.band)[1]);
+      out_ += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#eef3f8\"/>\n",
+                          from, top, to - from, height - top - bottom);
+    }
     for (const double tick : y_.ticks()) {
       line(left, y_.at(tick), width - right, y_.at(tick), "#dddddd", 0.7);
       write(left - 6.0, y_.at(tick) + 4.0, fmt::format("{:g}", tick), R"(text-anchor="end")");
@@ -156,13 +180,18 @@ private:
 
   void draw(const PlotSeries& series) {
     if (!plot_.categories.empty()) return bars(series);
-    if (series.line) {
+    if (series.line || series.area) {
       std::string path;
       for (const PlotPoint& point : series.points)
         if (shown(point))
           path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x_.at(point.x), y_.at(point.y));
-      out_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:g}\"/>\n", path, series.colour,
-                          series.width);
+      if (series.area && !path.empty())
+        out_ += fmt::format("<path d=\"{}V{:.1f}H{:.1f}Z\" fill=\"{}\"/>\n", path, y_.at(0.0),
+                            x_.at(series.points.front().x), series.colour);
+      else
+        out_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:g}\" "
+                            "stroke-linejoin=\"round\"/>\n",
+                            path, series.colour, series.width);
     }
     for (const PlotPoint& point : series.points) {
       if (!shown(point)) continue;

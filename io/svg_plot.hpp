@@ -1,6 +1,9 @@
-// A small plot as SVG text: two logarithmic or linear axes, lines, points, bars of error, labels. Internal to io.
+// A small plot as SVG text: two logarithmic or linear axes, lines, areas, points, bars of error, labels. Internal to
+// io.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,19 +22,22 @@ struct PlotSeries {
   bool line = false;
   bool dots = true;
   bool hollow = false;
+  bool area = false; ///< filled down to zero; series that follow are drawn over it
   double width = 1.5;
 };
 
 struct PlotAxis {
-  std::string name;
+  std::string name{};
   bool logarithmic = false;
+  bool from_zero = true; ///< a linear one shows zero
 };
 
 struct Plot {
-  std::string title;
-  PlotAxis x, y;
-  std::vector<PlotSeries> series;
-  std::vector<std::string> categories; ///< bars instead: names along x, at x = 0, 1, ...
+  std::string title{};
+  PlotAxis x{}, y{};
+  std::vector<PlotSeries> series{};
+  std::vector<std::string> categories{};       ///< bars instead: names along x, at x = 0, 1, ...
+  std::optional<std::array<double, 2>> band{}; ///< of x, shaded
 
   /// A whole SVG document. Points that an axis cannot show (not finite, or not positive on a logarithmic one) are left
   /// out.
