@@ -37,11 +37,12 @@ std::string granules_text(const Scene& scene) {
 }
 
 std::string structure_text(const Structure& structure) {
+  if (!(structure.mass > 0.0)) return "as in the scene below";
   const Vector3& d = structure.direction;
   const double frequency = std::sqrt(structure.stiffness / structure.mass) / (2.0 * std::numbers::pi);
   const double critical = 2.0 * std::sqrt(structure.stiffness * structure.mass);
   std::string text =
-      fmt::format("mass {:.4g} kg, stiffness {:.4g} N/m, damping {:.4g} N s/m, along ({:.3g}, {:.3g}, {:.3g})",
+      fmt::format("mass {:.6g} kg, stiffness {:.6g} N/m, damping {:.6g} N s/m, along ({:.3g}, {:.3g}, {:.3g})",
                   structure.mass, structure.stiffness, structure.damping, d[0], d[1], d[2]);
   if (structure.stiffness > 0.0)
     text += fmt::format("; bare {:.4g} Hz, damping ratio {:.3g} %", frequency, 100.0 * structure.damping / critical);
@@ -66,7 +67,8 @@ std::string excitation_text(const Scene& scene) {
 
 /// Amplitude of the structure alone under its force, and with `added` mass on it, m.
 double closed_form_amplitude(const Scene& scene, double added) {
-  if (!scene.structure || scene.excitation.kind != ExcitationKind::harmonic) return not_known;
+  if (!scene.structure || scene.excitation.kind != ExcitationKind::harmonic || !(scene.structure->mass > 0.0))
+    return not_known;
   const Structure& structure = *scene.structure;
   const double force =
       scene.excitation.force.value_or(structure.stiffness * scene.excitation.static_deflection.value_or(not_known));
@@ -110,7 +112,7 @@ void add_key_numbers(Page& page, const RunFacts& run) {
     if (run.scene && run.plan) {
       const double bare = closed_form_amplitude(*run.scene, 0.0);
       if (std::isfinite(bare) && run.plan->granules > 0)
-        cards.add("Against the bare structure", fmt::format("{:+.3g} %", 100.0 * (amplitude / bare - 1.0)),
+        cards.add("Against the bare structure", fmt::format("{:+.1f} %", 100.0 * (amplitude / bare - 1.0)),
                   fmt::format("which swings by {} here, with the granules as added mass by {}", readable(bare, "m", 3),
                               readable(closed_form_amplitude(*run.scene, run.plan->damper.granule_mass), "m", 3)));
     }

@@ -80,6 +80,7 @@ void add_energy(Page& page, const RunFacts& run, HistoryBook& book) {
     return;
   }
   add_shares(page, run);
+  page.add("<div class=\"time-controls\" hidden></div>\n");
   HistoryChart lost{"losses", "Energy lost since the start, one mechanism upon the other", "energy", "J", {}};
   lost.stacked = true;
   for (const Mechanism& one : losses) {

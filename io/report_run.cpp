@@ -3,61 +3,16 @@
 #include "io/report_histories.hpp"
 #include "io/report_verdict.hpp"
 #include "io/scene_file.hpp"
-#include "io/text_file.hpp"
 #include "solver/errors.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 namespace grandamp::report {
-namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-std::string content_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw FileError(file.string() + ": cannot read the file");
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-Json summary_of(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) return nullptr;
-  Json summary = Json::parse(content_of(file), nullptr, false);
-  if (!summary.is_object()) throw FileError(file.string() + ": is damaged: not a JSON object");
-  return summary;
-}
-
-std::string time_of(const fs::path& file) {
-  std::error_code error;
-  const auto written = fs::last_write_time(file, error);
-  if (error) return "";
-  const auto system = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::file_clock::to_sys(written));
-  return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::chrono::system_clock::to_time_t(system)));
-}
-
-} // namespace
-
-double number(const Json& json, std::string_view path) {
-  const Json::json_pointer pointer("/" + std::string(path));
-  if (!json.is_object() || !json.contains(pointer)) return not_known;
-  const Json& value = json.at(pointer);
-  return value.is_number() ? value.get<double>() : not_known;
-}
-
-std::string text(const Json& json, std::string_view path) {
-  const Json::json_pointer pointer("/" + std::string(path));
-  if (!json.is_object() || !json.contains(pointer)) return "";
-  const Json& value = json.at(pointer);
-  return value.is_string() ? value.get<std::string>() : "";
-}
 
 const std::vector<double>* RunFacts::column(std::string_view name) const {
   const auto found = std::find(history.names.begin(), history.names.end(), name);
@@ -88,7 +43,7 @@ RunFacts read_run(const fs::path& folder) {
   if (!fs::exists(folder / "results.h5", ignored))
     throw FileError((folder / "results.h5").string() +
                     ": there are no results; the run was stopped while its granules were poured, or still pours them");
-  run.summary = summary_of(folder / "summary.json");
+  if (fs::exists(folder / "summary.json", ignored)) run.summary = read_json(folder / "summary.json");
   run.history = read_history(folder / "results.h5");
   if (run.column("time") == nullptr || run.column("time")->empty() || run.column("displacement") == nullptr)
     throw FileError((folder / "results.h5").string() + ": holds no histories");
@@ -106,10 +61,9 @@ RunFacts read_run(const fs::path& folder) {
 
 Page run_page(const fs::path& folder) {
   const RunFacts run = read_run(folder);
-  std::string title = text(run.summary, "title");
-  if (title.empty() && run.scene) title = run.scene->title;
-  if (title.empty()) title = fs::absolute(folder).lexically_normal().filename().string();
-  if (title.empty()) title = "A run";
+  const std::string title = run.summary.is_null() && run.scene && !run.scene->title.empty()
+                                ? run.scene->title
+                                : title_of(run.summary, folder);
   const std::string status = run.summary.is_null() ? "not finished" : text(run.summary, "status");
   Page page(title, fmt::format("A run of grandamp, {}; results of {}", status, run.written));
   add_verdict(page, run);
@@ -119,6 +73,7 @@ Page run_page(const fs::path& folder) {
   HistoryBook book(*run.column("time"));
   add_histories(page, run, book);
   add_amplitudes(page, run);
+  add_spectrum(page, run);
   add_energy(page, run, book);
   book.close(page);
   if (std::isfinite(run.forcing_frequency())) page.facts()["period"] = 1.0 / run.forcing_frequency();

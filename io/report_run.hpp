@@ -1,25 +1,18 @@
 // What is known of a run, and the parts of its page. Internal to io.
 #pragma once
 
+#include "io/report_files.hpp"
 #include "io/report_page.hpp"
 #include "io/results.hpp"
 #include "solver/plan.hpp"
 
 #include <array>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace grandamp::report {
-
-inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-
-/// A number of a JSON object by its path ("structure/amplitude"); NaN where there is none.
-double number(const nlohmann::ordered_json& json, std::string_view path);
-/// A text likewise; empty where there is none.
-std::string text(const nlohmann::ordered_json& json, std::string_view path);
 
 struct RunFacts {
   std::filesystem::path folder;
@@ -52,6 +45,8 @@ void add_description(Page& page, const RunFacts& run);
 class HistoryBook;
 void add_histories(Page& page, const RunFacts& run, HistoryBook& book);
 void add_amplitudes(Page& page, const RunFacts& run);
+/// The frequency response, where the run left one.
+void add_spectrum(Page& page, const RunFacts& run);
 void add_energy(Page& page, const RunFacts& run, HistoryBook& book);
 void add_granules(Page& page, const RunFacts& run);
 void add_search_and_time(Page& page, const RunFacts& run);

@@ -1,7 +1,7 @@
 #include "io/report_study.hpp"
 
+#include "io/report_files.hpp"
 #include "io/report_histories.hpp"
-#include "io/report_run.hpp"
 #include "io/study_statistics.hpp"
 #include "solver/errors.hpp"
 
@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 
 namespace grandamp::report {
 namespace {
@@ -83,11 +82,6 @@ public:
   }
 
 private:
-  static std::string title_of(const Json& study, const std::filesystem::path& folder) {
-    const std::string title = text(study, "title");
-    return title.empty() ? std::filesystem::absolute(folder).lexically_normal().filename().string() : title;
-  }
-
   void advice() {
     const double done = number(study_, "runs/done"), planned = number(study_, "runs/planned"),
                  seeds = number(study_, "runs/seeds");
@@ -298,11 +292,7 @@ private:
 
 Page study_page(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "study.json";
-  std::ifstream stream(file);
-  if (!stream) throw FileError(file.string() + ": cannot read the file");
-  const Json study = Json::parse(stream, nullptr, false);
-  if (!study.is_object() || !study.contains("settings") || !study["settings"].is_array())
-    throw FileError(file.string() + ": is damaged: not the JSON of a study");
+  const Json study = read_json(file, {"settings"});
   try {
     return StudyPage(study, folder).made();
   } catch (const Json::exception& error) {

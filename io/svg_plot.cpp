@@ -68,7 +68,8 @@ public:
     }
     const double raw = (high_ - low_) / 5.0, decade = std::pow(10.0, std::floor(std::log10(raw)));
     const double step = raw / decade < 1.5 ? decade : raw / decade < 3.5 ? 2.0 * decade : 5.0 * decade;
-    for (double tick = std::ceil(low_ / step) * step; tick <= high_; tick += step) ticks.push_back(tick);
+    for (double tick = std::ceil(low_ / step) * step; tick <= high_; tick += step)
+      ticks.push_back(std::abs(tick) < 1e-9 * step ? 0.0 : tick); // a sum that misses 0 is not -0
     return ticks;
   }
 
@@ -218,6 +219,7 @@ private:
       const double y = y_.at(point.y);
       out_ += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n",
                           place(k) - half, y, 2.0 * half, height - bottom - y, series.colour);
+      if (point.high > point.low) line(place(k), y_.at(point.low), place(k), y_.at(point.high), "#222222", 1.2);
       write(place(k), y - 5.0, point.label, R"(text-anchor="middle")");
     }
   }

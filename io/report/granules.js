@@ -42,11 +42,11 @@ grandamp.granules = (() => {
   controls.enableZoom = false; // by the wheel only once the picture has the focus: the page scrolls over it
   controls.addEventListener("change", () => { dirty = true; });
 
-  let frame = 0, way = facts.ways[0], playing = false, speed = 25, follow = false, dirty = true, last = 0, drawn = 0;
+  let frame = frames - 1, way = facts.ways[0], playing = false, speed = 25, follow = false, dirty = true, last = 0, drawn = 0;
 
   function look(x, y, z) {
     const aspect = Math.min(1, camera.aspect || 1);
-    camera.position.copy(new THREE.Vector3(x, y, z).normalize().multiplyScalar(size * 2.0 / aspect).add(middle));
+    camera.position.copy(new THREE.Vector3(x, y, z).normalize().multiplyScalar(size * 1.75 / aspect).add(middle));
     controls.update();
     dirty = true;
   }

@@ -79,6 +79,7 @@ grandamp.histories = (() => {
       if (data.x !== undefined) shown.push(grandamp.element("span", {}, grandamp.digits(data.x, step) + " s"));
       for (const [k, line] of this.facts.lines.entries()) {
         const value = data.series[k] && data.series[k].y;
+        if (this.facts.lines.length === 1 && data.x === undefined) continue; // the title says it
         const text = value === undefined || value === null ? "" : " " + Number(value.toPrecision(5)) + " " + this.facts.unit;
         const mark = this.facts.lines.length > 1 ? [grandamp.element("i", { style: "background:" + grandamp.colour(line.colour) })] : [];
         shown.push(grandamp.element("span", {}, ...mark, line.name + text));
