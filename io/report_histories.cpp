@@ -26,18 +26,19 @@ Plot still_plot(const std::vector<double>& time, const HistoryChart& chart, cons
   plot.x = {.name = "time, s"};
   plot.y = {.name = unit.name.empty() ? chart.quantity : chart.quantity + ", " + unit.name, .from_zero = chart.stacked};
   if (std::isfinite(chart.band[0])) plot.band = chart.band;
+  // Stacked from the last upwards, so that the first is on top, as its name is.
+  std::vector<HistoryLine> lines = chart.lines;
+  if (chart.stacked) std::reverse(lines.begin(), lines.end());
   Rows rows{time, {}};
-  for (const HistoryLine& line : chart.lines) {
-    rows.columns.push_back(line.values);
-    if (!chart.stacked || rows.columns.size() == 1) continue;
-    std::vector<double>& sum = rows.columns.back();
-    const std::vector<double>& below = rows.columns[rows.columns.size() - 2];
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += below[k];
+  for (HistoryLine& line : lines) {
+    if (chart.stacked && !rows.columns.empty())
+      for (std::size_t k = 0; k < line.values.size(); ++k) line.values[k] += rows.columns.back()[k];
+    rows.columns.push_back(std::move(line.values));
   }
   const Rows thin = thinned(rows, rows_of_a_picture);
-  for (std::size_t c = 0; c < chart.lines.size(); ++c) {
-    PlotSeries series{.name = chart.lines.size() > 1 ? chart.lines[c].name : "",
-                      .colour = chart.lines[c].colour,
+  for (std::size_t c = 0; c < lines.size(); ++c) {
+    PlotSeries series{.name = lines.size() > 1 ? lines[c].name : "",
+                      .colour = lines[c].colour,
                       .line = true,
                       .dots = false,
                       .area = chart.stacked,
@@ -47,6 +48,7 @@ Plot still_plot(const std::vector<double>& time, const HistoryChart& chart, cons
     plot.series.push_back(std::move(series));
   }
   if (chart.stacked) std::reverse(plot.series.begin(), plot.series.end()); // the highest sum first, the others over it
+  plot.legend_left = chart.stacked;
   return plot;
 }
 

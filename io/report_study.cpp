@@ -228,6 +228,11 @@ private:
                       fmt::format("{:.3g}", number(setting, "audit/time"))});
     }
     if (rows.empty()) return;
+    if (std::all_of(series.points.begin(), series.points.end(), [](const PlotPoint& one) { return one.y == 0.0; })) {
+      page_.add("<p>No list policy missed a contact.</p>\n");
+      page_.add(table({"policy", "missed", "steps compared", "over, s"}, rows));
+      return;
+    }
     plot.series.push_back(std::move(series));
     page_.add(figure_of(plot, "missed_policy", "Found by comparing the list with all pairs.",
                         table({"policy", "missed", "steps compared", "over, s"}, rows)));

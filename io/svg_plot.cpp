@@ -131,14 +131,16 @@ private:
     }
     if (rows == 0) return;
     const double reach = 30.0 + 5.8 * static_cast<double>(longest);
-    out_ +=
-        fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="white" fill-opacity="0.8"/>)",
-                    width - right - reach, top + 1.0, reach - 1.0, 15.0 * static_cast<double>(rows) + 6.0);
+    const bool to_left = plot_.legend_left;
+    out_ += fmt::format(
+        R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="white" fill-opacity="0.8"/>)",
+        to_left ? left + 1.0 : width - right - reach, top + 1.0, reach - 1.0, 15.0 * static_cast<double>(rows) + 6.0);
     double y = top + 14.0;
     for (const PlotSeries& series : plot_.series) {
       if (series.name.empty()) continue;
-      mark(width - right - 12.0, y - 4.0, series);
-      write(width - right - 22.0, y, series.name, R"(text-anchor="end")");
+      mark(to_left ? left + 12.0 : width - right - 12.0, y - 4.0, series);
+      write(to_left ? left + 22.0 : width - right - 22.0, y, series.name,
+            to_left ? R"(text-anchor="start")" : R"(text-anchor="end")");
       y += 15.0;
     }
   }

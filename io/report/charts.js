@@ -6,15 +6,17 @@ grandamp.charts = (() => {
   /** Bars of error, beneath the dots. */
   const error_bars = {
     id: "error_bars",
-    beforeDatasetsDraw(chart) {
-      const context = chart.ctx;
+    beforeDatasetsDraw(chart) { if (chart.config.type !== "bar") error_bars.draw(chart); },
+    afterDatasetsDraw(chart) { if (chart.config.type === "bar") error_bars.draw(chart); },
+    draw(chart) {
+      const context = chart.ctx, bars = chart.config.type === "bar";
       chart.data.datasets.forEach((set, index) => {
         if (!chart.isDatasetVisible(index)) return;
-        context.strokeStyle = set.borderColor;
+        context.strokeStyle = bars ? grandamp.style("ink") : set.borderColor;
         context.lineWidth = 1;
-        for (const point of set.data) {
-          if (!point || point.low === undefined || point.low === null) continue;
-          const x = chart.scales.x.getPixelForValue(point.x);
+        for (const [k, point] of set.points.entries()) {
+          if (point.low === null) continue;
+          const x = chart.scales.x.getPixelForValue(bars ? k : point.x);
           const low = chart.scales.y.getPixelForValue(Math.max(point.low, chart.scales.y.min)), high = chart.scales.y.getPixelForValue(point.high);
           context.beginPath();
           context.moveTo(x, low); context.lineTo(x, high);
@@ -71,13 +73,27 @@ grandamp.charts = (() => {
       } } };
   }
 
-  function data_set(series, bars) {
+  /** What an axis must show: points, and whole bars of error; a little room around them where it is logarithmic. */
+  function reach(facts, which) {
+    const all = [];
+    for (const series of facts.series)
+      for (const [x, y, low, high] of series.points) {
+        if (which === "x") all.push(x);
+        else all.push(y, ...(high === null ? [] : [low, high]));
+      }
+    const shown = all.filter(value => isFinite(value) && (value > 0 || !facts[which].logarithmic));
+    if (shown.length === 0) return {};
+    const least = Math.min(...shown), greatest = Math.max(...shown);
+    return facts[which].logarithmic ? { min: least / 1.15, max: greatest * 1.15 } : { suggestedMin: least, suggestedMax: greatest };
+  }
+
+  function data_set(series, bars, order) {
     const colour = grandamp.colour(series.colour);
     const points = series.points.map(([x, y, low, high]) => ({ x, y, low, high }));
-    return { label: series.name, data: bars ? points.map(point => point.y) : points, names: series.points.map(point => point[4]), borderColor: colour,
+    return { label: series.name, data: bars ? points.map(point => point.y) : points, points, names: series.points.map(point => point[4]), borderColor: colour,
       backgroundColor: series.hollow ? grandamp.style("card") : colour, pointBackgroundColor: series.hollow ? grandamp.style("card") : colour, showLine: series.line,
       borderWidth: bars ? 0 : series.width, pointRadius: series.dots ? (points.length > 150 ? 1.5 : 3.5) : 0, pointHoverRadius: 6, pointHitRadius: 8,
-      maxBarThickness: 70 };
+      maxBarThickness: 70, order };
   }
 
   function tip(item) {
@@ -89,12 +105,12 @@ grandamp.charts = (() => {
 
   function configuration(facts) {
     const bars = facts.categories !== undefined, named = facts.series.filter(series => series.name !== "").length > 1;
-    return { type: bars ? "bar" : "scatter", data: { labels: facts.categories, datasets: facts.series.map(series => data_set(series, bars)) },
+    return { type: bars ? "bar" : "scatter", data: { labels: facts.categories, datasets: facts.series.map((series, k) => data_set(series, bars, -k)) }, // the last on top
       plugins: [band, error_bars, names],
       options: { animation: false, responsive: true, maintainAspectRatio: false, layout: { padding: { top: bars ? 16 : 4, right: 12 } },
         interaction: { mode: "nearest", intersect: true },
-        scales: { x: bars ? { grid: { display: false }, ticks: { color: grandamp.style("soft") }, title: { display: facts.x.name !== "", text: facts.x.name, color: grandamp.style("soft") } } : axis(facts.x, 0),
-          y: axis(facts.y, "5%") },
+        scales: { x: bars ? { grid: { display: false }, ticks: { color: grandamp.style("soft") }, title: { display: facts.x.name !== "", text: facts.x.name, color: grandamp.style("soft") } } : Object.assign(axis(facts.x, 0), reach(facts, "x")),
+          y: Object.assign(axis(facts.y, "5%"), reach(facts, "y")) },
         plugins: { band: facts.band ? { from: facts.band[0], to: facts.band[1] } : {},
           legend: { display: named, labels: { color: grandamp.style("ink"), usePointStyle: true, boxHeight: 7, filter: item => item.text !== "" } },
           tooltip: { callbacks: { title: () => "", label: tip } } } } };

@@ -1,22 +1,18 @@
 // The granules in their enclosure: turning, playing, coloured.
 "use strict";
-grandamp.granules = (() => {
-  const [figure] = grandamp.figures("granules");
+grandamp.granules = null;
+grandamp.show_granules = figure => {
   const facts = figure.facts, { count, frames } = facts;
 
-  function renderer_or_none() {
-    try {
-      const made = new THREE.WebGLRenderer({ antialias: true, alpha: true });
-      if (made.capabilities.isWebGL2 || made.extensions.get("EXT_frag_depth") && made.extensions.get("ANGLE_instanced_arrays")) return made;
-    } catch (error) { /* told below */ }
-    return null;
-  }
-  const canvas_test = document.createElement("canvas");
-  const renderer = canvas_test.getContext("webgl") ? renderer_or_none() : null;
-  if (!renderer) {
+  const canvas = document.createElement("canvas");
+  const context = canvas.getContext("webgl2", { antialias: true, alpha: true }) || canvas.getContext("webgl", { antialias: true, alpha: true });
+  const can = context && (window.WebGL2RenderingContext && context instanceof WebGL2RenderingContext ||
+    context.getExtension("EXT_frag_depth") && context.getExtension("ANGLE_instanced_arrays"));
+  if (!can) {
     grandamp.keep_still(figure, "This browser draws nothing in three dimensions here (WebGL): the picture stands still.");
-    return null;
+    return;
   }
+  const renderer = new THREE.WebGLRenderer({ canvas, context });
 
   const places = grandamp.data("places", Uint16Array);
   const radii = grandamp.data("radii", Float32Array);
@@ -112,7 +108,6 @@ grandamp.granules = (() => {
   figure.live.append(element("div", { class: "controls" }, view("Corner", 1, -1.7, 0.75), view("Front", 0, -1, 0.001), view("Side", 1, 0, 0.001), view("Top", 0, -0.001, 1),
     ...(facts.displacement ? [element("label", {}, swing, "move with the structure")] : [])));
 
-  const canvas = renderer.domElement;
   canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", `${figure.title}. Arrow keys turn it, plus and minus zoom, space plays.`);
@@ -168,5 +163,7 @@ grandamp.granules = (() => {
   new ResizeObserver(fit).observe(viewer);
   fit();
   requestAnimationFrame(step);
-  return { frame: () => frame, playing: () => playing, drawn: () => drawn, turn, play };
-})();
+  grandamp.granules = { frame: () => frame, playing: () => playing, drawn: () => drawn, turn, play };
+};
+// Making it takes a moment, which the page need not wait for.
+for (const figure of grandamp.figures("granules")) grandamp.when_near(figure.element, () => grandamp.show_granules(figure));
