@@ -7,10 +7,10 @@ build_packages=(g++ cmake ninja-build libcli11-dev libeigen3-dev libfmt-dev libh
 
 demo_packages=("${build_packages[@]}" python3 python3-matplotlib python3-numpy)
 
-# chromium, python3-websocket: the pages as a browser shows them; clang-14: libFuzzer and clang-tidy; qemu-user: the program on a processor without AVX; h5py and matplotlib: another reader of
-# our files, and the paper's figures.
-test_packages=("${build_packages[@]}" binutils chromium clang-14 clang-format-14 clang-tidy-14 doctest-dev git libbenchmark-dev
-  hdf5-tools libclang-rt-14-dev python3 python3-h5py python3-matplotlib python3-numpy python3-websocket
+# clang-14: libFuzzer and clang-tidy; qemu-user: the program on a processor without AVX; h5py and matplotlib: another reader of
+# our files, and the paper's figures; chromium, which needs a font, and python3-websocket, which speaks to it: reports' pages.
+test_packages=("${build_packages[@]}" binutils chromium clang-14 clang-format-14 clang-tidy-14 doctest-dev fonts-dejavu-core git
+  libbenchmark-dev hdf5-tools libclang-rt-14-dev python3 python3-h5py python3-matplotlib python3-numpy python3-websocket
   qemu-user)
 
 paper_packages=("${build_packages[@]}" doctest-dev python3 python3-h5py python3-matplotlib python3-numpy)
