@@ -80,7 +80,10 @@ ReadableUnit readable_unit(double largest, std::string_view unit) {
 std::string readable(double value, std::string_view unit, int digits) {
   if (!std::isfinite(value)) return "not known";
   const ReadableUnit scaled = readable_unit(value, unit);
-  return fmt::format("{:.{}g}{}{}", value * scaled.factor, digits, scaled.name.empty() ? "" : " ", scaled.name);
+  const double number = value * scaled.factor;
+  const bool whole = std::abs(number) >= std::pow(10.0, digits) && std::abs(number) < 1e6; // 320, not 3.2e+02
+  return (whole ? fmt::format("{:.0f}", number) : fmt::format("{:.{}g}", number, digits)) +
+         (scaled.name.empty() ? "" : " " + scaled.name);
 }
 
 } // namespace grandamp::report

@@ -112,7 +112,8 @@ void add_key_numbers(Page& page, const RunFacts& run) {
     if (run.scene && run.plan) {
       const double bare = closed_form_amplitude(*run.scene, 0.0);
       if (std::isfinite(bare) && run.plan->granules > 0)
-        cards.add("Against the bare structure", fmt::format("{:+.1f} %", std::round(1000.0 * (amplitude / bare - 1.0)) / 10.0 + 0.0),
+        cards.add("Against the bare structure",
+                  fmt::format("{:+.1f} %", std::round(1000.0 * (amplitude / bare - 1.0)) / 10.0 + 0.0),
                   fmt::format("which swings by {} here, with the granules as added mass by {}", readable(bare, "m", 3),
                               readable(closed_form_amplitude(*run.scene, run.plan->damper.granule_mass), "m", 3)));
     }

@@ -17,6 +17,21 @@ std::string percent(double share) {
   return fmt::format("{:.2g} %", 100.0 * share);
 }
 
+/// Between backquotes stands what is typed.
+std::string with_code(const std::string& text) {
+  std::string html;
+  bool code = false;
+  for (const char c : escaped(text)) {
+    if (c != '`') {
+      html += c;
+      continue;
+    }
+    html += code ? "</code>" : "<code>";
+    code = !code;
+  }
+  return html + (code ? "</code>" : "");
+}
+
 class Watch {
 public:
   explicit Watch(const RunFacts& run) : run_(run), summary_(run.summary) {}
@@ -172,8 +187,8 @@ void add_verdict(Page& page, const RunFacts& run) {
                                  all.style, all.mark, all.text);
   for (const Caution& caution : cautions) {
     const Words& one = words[static_cast<int>(caution.doubt)];
-    html += fmt::format("<li class=\"{}\"><strong>{}</strong> {}</li>\n", one.style, escaped(caution.what),
-                        escaped(caution.so));
+    html += fmt::format("<li class=\"{}\"><strong>{}</strong> {}</li>\n", one.style, with_code(caution.what),
+                        with_code(caution.so));
   }
   page.add(html + "</ul></div>\n");
 }

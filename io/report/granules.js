@@ -133,13 +133,30 @@ grandamp.show_granules = figure => {
     const wide = viewer.clientWidth, high = viewer.clientHeight;
     if (!wide || !high) return;
     const first = camera.userData.fitted !== true;
-    renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
     renderer.setSize(wide, high);
     camera.aspect = wide / high;
     camera.updateProjectionMatrix();
     camera.userData.fitted = true;
     if (first) look(1, -1.7, 0.75);
     dirty = true;
+  }
+
+  // While it moves as fine as the machine can draw it smoothly; at rest finer than the screen.
+  const screen_ratio = Math.min(devicePixelRatio || 1, 2);
+  let rough = screen_ratio, rested = false, moved_at = 0;
+  function render(now) {
+    if (dirty) {
+      const pause = now - moved_at;
+      if (pause < 400) rough = pause > 55 ? Math.max(0.4, 0.85 * rough) : pause < 25 ? Math.min(screen_ratio, 1.1 * rough) : rough;
+      moved_at = now;
+      rested = dirty = false;
+      if (renderer.getPixelRatio() !== rough) renderer.setPixelRatio(rough);
+    } else if (!rested && !playing && now - moved_at > 250) {
+      rested = true;
+      renderer.setPixelRatio(rough < screen_ratio ? screen_ratio : 2);
+    } else return;
+    renderer.render(scene, camera);
+    ++drawn;
   }
 
   function step(now) {
@@ -149,11 +166,7 @@ grandamp.show_granules = figure => {
       if (frame + steps >= frames && frame === frames - 1) play(false);
       else { frame = Math.min(frame + steps, frames - 1); place_frame(); }
     }
-    if (dirty) {
-      dirty = false;
-      renderer.render(scene, camera);
-      ++drawn;
-    }
+    render(now);
     requestAnimationFrame(step);
   }
 
