@@ -1,15 +1,17 @@
 # The project's Debian 12 packages: the one list. Sourced by io/demo.sh and tests/run.sh.
 # shellcheck shell=bash disable=SC2034
 
-build_packages=(g++ cmake ninja-build libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libspdlog-dev libtbb-dev
-  libtomlplusplus-dev libxsimd-dev libxxhash-dev nlohmann-json3-dev)
+# libjs-*: embedded in the pages of `grandamp report`.
+build_packages=(g++ cmake ninja-build libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libjs-chart.js libjs-dygraphs
+  libjs-three libspdlog-dev libtbb-dev libtomlplusplus-dev libxsimd-dev libxxhash-dev nlohmann-json3-dev)
 
 demo_packages=("${build_packages[@]}" python3 python3-matplotlib python3-numpy)
 
 # clang-14: libFuzzer and clang-tidy; qemu-user: the program on a processor without AVX; h5py and matplotlib: another reader of
-# our files, and the paper's figures.
-test_packages=("${build_packages[@]}" binutils clang-14 clang-format-14 clang-tidy-14 doctest-dev git libbenchmark-dev
-  hdf5-tools libclang-rt-14-dev python3 python3-h5py python3-matplotlib python3-numpy qemu-user)
+# our files, and the paper's figures; chromium, which needs a font, and python3-websocket, which speaks to it: reports' pages.
+test_packages=("${build_packages[@]}" binutils chromium clang-14 clang-format-14 clang-tidy-14 doctest-dev fonts-dejavu-core git
+  libbenchmark-dev hdf5-tools libclang-rt-14-dev python3 python3-h5py python3-matplotlib python3-numpy python3-websocket
+  qemu-user)
 
 paper_packages=("${build_packages[@]}" doctest-dev python3 python3-h5py python3-matplotlib python3-numpy)
 

@@ -80,6 +80,21 @@ Snapshot read_final_granules(const std::filesystem::path& path);
 /// The snapshot nearest to `time`, s; the granules at the end count as one, where the run came to its end. Nothing if
 /// the run took no snapshots.
 std::optional<Snapshot> read_snapshot_near(const std::filesystem::path& path, double time);
+/// The snapshots of a run one by one, those that only the log beside the results holds, too.
+class SnapshotReader {
+public:
+  explicit SnapshotReader(const std::filesystem::path& path);
+  ~SnapshotReader();
+  SnapshotReader(const SnapshotReader&) = delete;
+  SnapshotReader& operator=(const SnapshotReader&) = delete;
+  const std::vector<double>& times() const; ///< s
+  Snapshot read(std::size_t index) const;
+
+private:
+  friend std::optional<Snapshot> read_snapshot_near(const std::filesystem::path& path, double time);
+  struct State;
+  std::unique_ptr<State> state_;
+};
 std::string read_stored_scene(const std::filesystem::path& path);
 
 /// Comma-separated with a header row, 17 significant digits. Throws FileError.

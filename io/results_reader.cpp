@@ -63,20 +63,41 @@ Snapshot read_final_granules(const fs::path& path) {
   return read_final_granules(file);
 }
 
+struct SnapshotReader::State {
+  explicit State(const fs::path& path)
+      : file(hdf5::File::open(path)), log(log_beside(path, "snapshots.part", snapshots_kind)),
+        times(read_snapshot_times(file)), folded(times.size()) {
+    for (auto k = static_cast<std::int64_t>(folded); log && k < log->count(); ++k)
+      times.push_back(grandamp::read_snapshot(*log, k).time);
+  }
+  hdf5::File file;
+  std::optional<RecordLog> log;
+  std::vector<double> times;
+  std::size_t folded; ///< the first ones, in the file
+};
+
+SnapshotReader::SnapshotReader(const fs::path& path) : state_(std::make_unique<State>(path)) {}
+SnapshotReader::~SnapshotReader() = default;
+
+const std::vector<double>& SnapshotReader::times() const {
+  return state_->times;
+}
+
+Snapshot SnapshotReader::read(std::size_t index) const {
+  return index < state_->folded ? read_snapshot(state_->file, index)
+                                : read_snapshot(*state_->log, static_cast<std::int64_t>(index));
+}
+
 std::optional<Snapshot> read_snapshot_near(const fs::path& path, double time) {
-  const hdf5::File file = hdf5::File::open(path);
-  const auto log = log_beside(path, "snapshots.part", snapshots_kind);
-  std::vector<double> times = read_snapshot_times(file);
-  const std::size_t folded = times.size();
-  for (auto k = static_cast<std::int64_t>(folded); log && k < log->count(); ++k)
-    times.push_back(read_snapshot(*log, k).time);
+  const SnapshotReader snapshots(path);
+  const std::vector<double>& times = snapshots.times();
   if (times.empty()) return std::nullopt;
   const auto nearest = std::min_element(times.begin(), times.end(),
                                         [time](double a, double b) { return std::abs(a - time) < std::abs(b - time); });
+  const hdf5::File& file = snapshots.state_->file;
   if (file.has("/final") && std::abs(file.double_attribute("/final", "time") - time) < std::abs(*nearest - time))
     return read_final_granules(file);
-  const auto index = static_cast<std::size_t>(nearest - times.begin());
-  return index < folded ? read_snapshot(file, index) : read_snapshot(*log, static_cast<std::int64_t>(index));
+  return snapshots.read(static_cast<std::size_t>(nearest - times.begin()));
 }
 
 std::string read_stored_scene(const fs::path& path) {

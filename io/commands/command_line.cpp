@@ -204,6 +204,13 @@ int command_line(int argc, char** argv) {
       ->required();
   add_quiet(*export_app, export_quiet);
 
+  ReportArguments reported;
+  bool report_quiet = false;
+  CLI::App* const report_app =
+      app.add_subcommand("report", "A page, report.html, with pictures of a run, a sweep or a study");
+  report_app->add_option("DIR", reported.folder, "Folder of a run, a sweep or a study")->required();
+  add_quiet(*report_app, report_quiet);
+
   InspectArguments inspected;
   CLI::App* const inspect_app = app.add_subcommand("inspect", "What a results or checkpoint file holds; is it whole?");
   inspect_app->add_option("FILE", inspected.file, "results.h5 or checkpoint.h5")->required();
@@ -217,7 +224,6 @@ int command_line(int argc, char** argv) {
 
   refuse(app, "sweep", "A case per point of a grid");
   refuse(app, "optimise", "The best design");
-  refuse(app, "report", "A page with pictures of a run");
 
   try {
     app.parse(argc, argv);
@@ -230,13 +236,15 @@ int command_line(int argc, char** argv) {
     spdlog::error("{}", error.what());
     return exit_usage;
   }
-  if (run.quiet || resumed.quiet || check.quiet || export_quiet || study.quiet) spdlog::set_level(spdlog::level::warn);
+  if (run.quiet || resumed.quiet || check.quiet || export_quiet || report_quiet || study.quiet)
+    spdlog::set_level(spdlog::level::warn);
 
   if (run_app->parsed()) return guarded(run.scene, [&run] { return run_command(run); });
   if (resume_app->parsed())
     return guarded(resumed.folder / "scene.toml", [&resumed] { return resume_command(resumed); });
   if (accuracy_app->parsed()) return guarded(study.scene, [&study] { return study_command(study); });
   if (check_app->parsed()) return guarded(check.scene, [&check] { return check_command(check); });
+  if (report_app->parsed()) return guarded({}, [&reported] { return report_command(reported); });
   if (inspect_app->parsed()) return guarded({}, [&inspected] { return inspect_command(inspected); });
   return guarded({}, [&exported] { return export_command(exported); });
 }

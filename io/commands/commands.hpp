@@ -70,6 +70,10 @@ struct ExportArguments {
   std::filesystem::path file;
 };
 
+struct ReportArguments {
+  std::filesystem::path folder;
+};
+
 struct InspectArguments {
   std::filesystem::path file;
 };
@@ -78,6 +82,7 @@ int run_command(const RunArguments& arguments);
 int resume_command(const ResumeArguments& arguments);
 int check_command(const CheckArguments& arguments);
 int export_command(const ExportArguments& arguments);
+int report_command(const ReportArguments& arguments);
 int inspect_command(const InspectArguments& arguments);
 int study_command(const StudyArguments& arguments);
 
