@@ -31,7 +31,8 @@ std::string escaped(const std::string& text) {
 /// Values to places along one side of the frame.
 class Scale {
 public:
-  Scale(bool logarithmic, double from, double to) : logarithmic_(logarithmic), from_(from), to_(to) {}
+  Scale(const PlotAxis& axis, double from, double to)
+      : logarithmic_(axis.logarithmic), from_zero_(axis.from_zero), from_(from), to_(to) {}
 
   bool shows(double value) const { return std::isfinite(value) && (!logarithmic_ || value > 0.0); }
   void include(double value) {
@@ -44,6 +45,10 @@ public:
     if (logarithmic_) {
       low_ = std::pow(10.0, std::floor(std::log10(low_) * 2.0 + 1e-9) / 2.0) * 0.95;
       high_ = std::pow(10.0, std::ceil(std::log10(high_) * 2.0 - 1e-9) / 2.0) * 1.05;
+    } else if (!from_zero_ && high_ > low_) {
+      const double margin = 0.04 * (high_ - low_);
+      low_ -= margin;
+      high_ += margin;
     } else {
       low_ = std::min(0.0, low_);
       high_ = high_ > low_ ? high_ + 0.08 * (high_ - low_) : low_ + 1.0;
@@ -70,7 +75,7 @@ public:
   }
 
 private:
-  bool logarithmic_;
+  bool logarithmic_, from_zero_;
   double from_, to_;
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
 };
@@ -78,13 +83,14 @@ private:
 class Drawing {
 public:
   Drawing(const Plot& plot)
-      : plot_(plot), x_(plot.x.logarithmic, left, width - right), y_(plot.y.logarithmic, height - bottom, top) {
+      : plot_(plot), x_(plot.x, left, width - right), y_(plot.y, height - bottom, top) {
     for (const PlotSeries& series : plot.series)
       for (const PlotPoint& point : series.points) {
         if (!shown(point)) continue;
         x_.include(point.x);
         y_.include(point.y);
         if (point.high > point.low) y_.include(point.high);
+        if (point.high > point.low && !plot.y.from_zero) y_.include(point.low);
       }
     if (!plot.categories.empty()) {
       x_.include(-0.6);
@@ -189,6 +195,7 @@ private:
       const double y = y_.at(point.y);
       out_ += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n",
                           place(k) - half, y, 2.0 * half, height - bottom - y, series.colour);
+      if (point.high > point.low) line(place(k), y_.at(point.low), place(k), y_.at(point.high), "#222222", 1.2);
       write(place(k), y - 5.0, point.label, R"(text-anchor="middle")");
     }
   }

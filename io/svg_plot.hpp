@@ -25,6 +25,7 @@ struct PlotSeries {
 struct PlotAxis {
   std::string name;
   bool logarithmic = false;
+  bool from_zero = true; ///< a linear axis begins at 0 unless values are below it; else at the least value
 };
 
 struct Plot {

@@ -75,6 +75,51 @@ void add_study(CLI::App& command, StudyArguments& study) {
   add_max_wall(command, study.max_wall);
 }
 
+void add_keep(CLI::App& command, std::string& keep) {
+  command.add_option("--keep", keep, "What stays: total_mass of the granules, whose count (or radius) then follows")
+      ->check(CLI::IsMember({"total_mass"}));
+}
+
+void add_sweep(CLI::App& command, SweepArguments& sweep) {
+  command.add_option("SCENE", sweep.scene, "Scene file, TOML")->required();
+  command
+      .add_option("--vary", sweep.vary,
+                  "A scene key and its values, both ends included: KEY=START:STOP:COUNT, by equal factors with :log at "
+                  "the end, or KEY=a,b,c; several: their grid")
+      ->type_name("KEY=VALUES")
+      ->required()
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("-o", sweep.folder, "Folder of the sweep; default: the scene's stem")->type_name("DIR");
+  command.add_option("--seeds", sweep.seeds, "Runs of each point, from seeds that follow the scene's; default 1")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  add_keep(command, sweep.keep);
+  command.add_option("--index", sweep.index, "With --of: run this part only, from 0")->type_name("I");
+  command.add_option("--of", sweep.of, "Parts that the runs are dealt out to, as for job arrays")->type_name("N");
+  add_overrides(command, sweep.overrides);
+  command.add_option("--threads", sweep.threads, "Runs at a time; default: what the process may use")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+  add_isa(command, sweep.isa);
+  command.add_flag("--force", sweep.force, "Replace the sweep that the folder holds");
+  add_quiet(command, sweep.quiet);
+  command.add_flag("--json", sweep.json, "Print sweep.json on standard output");
+  command
+      .add_option("--max-wall", sweep.max_wall, "After so much wall time let all runs write checkpoints; status 130")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
+  command.footer("Given again, the command runs only what is missing. Examples:\n"
+                 "  grandamp sweep damper.toml --vary excitation.frequency=15.5:16.5:11 --seeds 3\n"
+                 "      the response, with error bars, beside the bare structure and the granules as added mass\n"
+                 "  grandamp sweep damper.toml --vary excitation.static_deflection=1e-5:1e-3:9:log\n"
+                 "      damping against dimensionless acceleration\n"
+                 "  grandamp sweep damper.toml --vary granules.0.radius=1.4e-3:2.5e-3:6 --keep total_mass\n"
+                 "      granules' size at one total mass\n"
+                 "  grandamp sweep damper.toml --vary contact.friction=coulomb,none --vary structure.damping=0.1,0.2\n"
+                 "      every friction law with every damping");
+}
+
 void refuse(CLI::App& app, const std::string& command, const std::string& what) {
   CLI::App* const refused = app.add_subcommand(command, what + " (not yet)");
   refused->allow_extras();
@@ -204,7 +249,10 @@ int command_line(int argc, char** argv) {
       "accuracy", "Error against time over step, integrator, precision, list, friction, stiffness");
   add_study(*accuracy_app, study);
 
-  refuse(app, "sweep", "A case per point of a grid");
+  SweepArguments sweep;
+  CLI::App* const sweep_app = app.add_subcommand("sweep", "A run per point of a grid of scene keys, several at a time");
+  add_sweep(*sweep_app, sweep);
+
   refuse(app, "optimise", "The best design");
   refuse(app, "report", "A page with pictures of a run");
 
@@ -219,12 +267,14 @@ int command_line(int argc, char** argv) {
     spdlog::error("{}", error.what());
     return exit_usage;
   }
-  if (run.quiet || resumed.quiet || check.quiet || export_quiet || study.quiet) spdlog::set_level(spdlog::level::warn);
+  if (run.quiet || resumed.quiet || check.quiet || export_quiet || study.quiet || sweep.quiet)
+    spdlog::set_level(spdlog::level::warn);
 
   if (run_app->parsed()) return guarded(run.scene, [&run] { return run_command(run); });
   if (resume_app->parsed())
     return guarded(resumed.folder / "scene.toml", [&resumed] { return resume_command(resumed); });
   if (accuracy_app->parsed()) return guarded(study.scene, [&study] { return study_command(study); });
+  if (sweep_app->parsed()) return guarded(sweep.scene, [&sweep] { return sweep_command(sweep); });
   if (check_app->parsed()) return guarded(check.scene, [&check] { return check_command(check); });
   if (inspect_app->parsed()) return guarded({}, [&inspected] { return inspect_command(inspected); });
   return guarded({}, [&exported] { return export_command(exported); });

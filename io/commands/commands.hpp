@@ -61,6 +61,22 @@ struct StudyArguments {
   bool json = false;
 };
 
+struct SweepArguments {
+  std::filesystem::path scene;
+  std::filesystem::path folder;       ///< empty: the scene's stem
+  std::vector<std::string> overrides; ///< KEY=VALUE
+  std::vector<std::string> vary;      ///< KEY=START:STOP:COUNT or KEY=a,b,c
+  std::string keep;                   ///< "total_mass" or empty
+  int seeds = 1;
+  std::optional<int> index, of;
+  int threads = 0; ///< 0: what the process may use
+  std::string isa;
+  double max_wall = 0.0; ///< s; 0: no end
+  bool force = false;
+  bool quiet = false;
+  bool json = false;
+};
+
 struct ExportArguments {
   std::filesystem::path folder;
   std::string what;           ///< "history" or "granules"
@@ -78,6 +94,7 @@ int check_command(const CheckArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int inspect_command(const InspectArguments& arguments);
 int study_command(const StudyArguments& arguments);
+int sweep_command(const SweepArguments& arguments);
 
 /// Throws UsageError unless this machine runs the instruction set of that name; empty: none asked for.
 void require_isa(const std::string& isa);
