@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -86,13 +87,15 @@ private:
   void finish(const CaseJob& job, int status) {
     const CaseState state = state_of(job);
     const bool elsewhere = state.status == CaseStatus::running_elsewhere || state.status == CaseStatus::done;
-    if (status != 0 && status != 130 && !elsewhere) {
+    // A process that is asked to stop before it listens dies of that.
+    const bool stopped = status == 130 || status == 128 + SIGTERM || status == 128 + SIGINT || status == 128 + SIGHUP;
+    if (status != 0 && !stopped && !elsewhere) {
       const std::string error = told_error(job.folder / "log.txt", status);
       note_failure(job, status, error);
       if (options_.warning) options_.warning(fmt::format("{}: failed: {}", job.folder.string(), error));
     }
     // A case that was told to stop, by whomever, is not done; it goes on when the command is given again.
-    if (status == 130 && !stopping_ && options_.warning)
+    if (stopped && !stopping_ && options_.warning)
       options_.warning(job.folder.string() + ": was interrupted; the same command goes on with it");
     ++done_;
     done_work_ += job.work;

@@ -1,8 +1,8 @@
 # The project's Debian 12 packages: the one list. Sourced by io/demo.sh and tests/run.sh.
 # shellcheck shell=bash disable=SC2034
 
-build_packages=(g++ cmake ninja-build libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libspdlog-dev libtbb-dev
-  libtomlplusplus-dev libxsimd-dev libxxhash-dev nlohmann-json3-dev)
+build_packages=(g++ cmake ninja-build libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libnlopt-cxx-dev libnlopt-dev
+  libspdlog-dev libtbb-dev libtomlplusplus-dev libxsimd-dev libxxhash-dev nlohmann-json3-dev)
 
 demo_packages=("${build_packages[@]}" python3 python3-matplotlib python3-numpy)
 

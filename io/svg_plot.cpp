@@ -70,7 +70,8 @@ public:
     }
     const double raw = (high_ - low_) / 5.0, decade = std::pow(10.0, std::floor(std::log10(raw)));
     const double step = raw / decade < 1.5 ? decade : raw / decade < 3.5 ? 2.0 * decade : 5.0 * decade;
-    for (double tick = std::ceil(low_ / step) * step; tick <= high_; tick += step) ticks.push_back(tick);
+    for (double tick = std::ceil(low_ / step) * step; tick <= high_; tick += step)
+      ticks.push_back(std::abs(tick) < 1e-9 * step ? 0.0 : tick); // a sum that misses 0 is not -0
     return ticks;
   }
 
@@ -82,8 +83,7 @@ private:
 
 class Drawing {
 public:
-  Drawing(const Plot& plot)
-      : plot_(plot), x_(plot.x, left, width - right), y_(plot.y, height - bottom, top) {
+  Drawing(const Plot& plot) : plot_(plot), x_(plot.x, left, width - right), y_(plot.y, height - bottom, top) {
     for (const PlotSeries& series : plot.series)
       for (const PlotPoint& point : series.points) {
         if (!shown(point)) continue;

@@ -1,6 +1,5 @@
 #include "io/sweep_grid.hpp"
 
-#include "io/commands/commands.hpp"
 #include "io/run.hpp"
 #include "solver/team.hpp"
 
@@ -15,6 +14,7 @@ namespace {
 
 /// A step of fewer granules is not worth sharing (solver/simulation.cpp).
 constexpr std::size_t worth_sharing = 20'000;
+constexpr int bad_scene = 2;                 // the exit status of a run of it
 constexpr double standard_gravity = 9.80665; // m/s^2
 
 std::string in_a_line(const std::vector<Problem>& problems) {
@@ -91,7 +91,7 @@ std::string bits_of(const std::string& isa) {
 void look_at_runs(std::vector<CaseRun>& runs, const std::vector<CasePoint>& points) {
   for (CaseRun& run : runs) {
     const std::string& fault = points[run.point].fault;
-    run.state = fault.empty() ? state_of(run.job) : CaseState{CaseStatus::failed, exit_usage, fault};
+    run.state = fault.empty() ? state_of(run.job) : CaseState{CaseStatus::failed, bad_scene, fault};
     run.numbers = run.state.status == CaseStatus::done ? CaseNumbers(summary_of(run.job)) : CaseNumbers();
   }
 }

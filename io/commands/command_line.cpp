@@ -1,4 +1,5 @@
 #include "io/commands/commands.hpp"
+#include "io/commands/options.hpp"
 #include "io/run.hpp"
 #include "io/study.hpp"
 #include "io/version.hpp"
@@ -22,28 +23,6 @@ void log_to_standard_error() {
   auto logger = std::make_shared<spdlog::logger>("grandamp", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
   logger->set_pattern("%^%l%$: %v");
   spdlog::set_default_logger(std::move(logger));
-}
-
-void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
-  command.add_option("--set", overrides, "Override a scene key, dotted; list items by index: granules.0.count=100")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
-
-void add_threads(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "Threads; default: chosen by the number of granules")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4096));
-}
-
-void add_isa(CLI::App& command, std::string& isa) {
-  command.add_option("--isa", isa, "Instruction set of the kernels; default: the best of this machine")
-      ->check(CLI::IsMember({"generic", "avx2", "avx512"}));
-}
-
-void add_quiet(CLI::App& command, bool& quiet) {
-  command.add_flag("--quiet", quiet, "Only warnings and errors");
 }
 
 void add_profile(CLI::App& command, bool& profile) {
@@ -73,51 +52,6 @@ void add_study(CLI::App& command, StudyArguments& study) {
   add_quiet(command, study.quiet);
   command.add_flag("--json", study.json, "Print study.json on standard output");
   add_max_wall(command, study.max_wall);
-}
-
-void add_keep(CLI::App& command, std::string& keep) {
-  command.add_option("--keep", keep, "What stays: total_mass of the granules, whose count (or radius) then follows")
-      ->check(CLI::IsMember({"total_mass"}));
-}
-
-void add_sweep(CLI::App& command, SweepArguments& sweep) {
-  command.add_option("SCENE", sweep.scene, "Scene file, TOML")->required();
-  command
-      .add_option("--vary", sweep.vary,
-                  "A scene key and its values, both ends included: KEY=START:STOP:COUNT, by equal factors with :log at "
-                  "the end, or KEY=a,b,c; several: their grid")
-      ->type_name("KEY=VALUES")
-      ->required()
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("-o", sweep.folder, "Folder of the sweep; default: the scene's stem")->type_name("DIR");
-  command.add_option("--seeds", sweep.seeds, "Runs of each point, from seeds that follow the scene's; default 1")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000));
-  add_keep(command, sweep.keep);
-  command.add_option("--index", sweep.index, "With --of: run this part only, from 0")->type_name("I");
-  command.add_option("--of", sweep.of, "Parts that the runs are dealt out to, as for job arrays")->type_name("N");
-  add_overrides(command, sweep.overrides);
-  command.add_option("--threads", sweep.threads, "Runs at a time; default: what the process may use")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4096));
-  add_isa(command, sweep.isa);
-  command.add_flag("--force", sweep.force, "Replace the sweep that the folder holds");
-  add_quiet(command, sweep.quiet);
-  command.add_flag("--json", sweep.json, "Print sweep.json on standard output");
-  command
-      .add_option("--max-wall", sweep.max_wall, "After so much wall time let all runs write checkpoints; status 130")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
-  command.footer("Given again, the command runs only what is missing. Examples:\n"
-                 "  grandamp sweep damper.toml --vary excitation.frequency=15.5:16.5:11 --seeds 3\n"
-                 "      the response, with error bars, beside the bare structure and the granules as added mass\n"
-                 "  grandamp sweep damper.toml --vary excitation.static_deflection=1e-5:1e-3:9:log\n"
-                 "      damping against dimensionless acceleration\n"
-                 "  grandamp sweep damper.toml --vary granules.0.radius=1.4e-3:2.5e-3:6 --keep total_mass\n"
-                 "      granules' size at one total mass\n"
-                 "  grandamp sweep damper.toml --vary contact.friction=coulomb,none --vary structure.damping=0.1,0.2\n"
-                 "      every friction law with every damping");
 }
 
 void refuse(CLI::App& app, const std::string& command, const std::string& what) {
@@ -253,7 +187,10 @@ int command_line(int argc, char** argv) {
   CLI::App* const sweep_app = app.add_subcommand("sweep", "A run per point of a grid of scene keys, several at a time");
   add_sweep(*sweep_app, sweep);
 
-  refuse(app, "optimise", "The best design");
+  OptimiseArguments optimise;
+  CLI::App* const optimise_app = app.add_subcommand("optimise", "The design for which a number of the summary is best");
+  add_optimise(*optimise_app, optimise);
+
   refuse(app, "report", "A page with pictures of a run");
 
   try {
@@ -267,7 +204,7 @@ int command_line(int argc, char** argv) {
     spdlog::error("{}", error.what());
     return exit_usage;
   }
-  if (run.quiet || resumed.quiet || check.quiet || export_quiet || study.quiet || sweep.quiet)
+  if (run.quiet || resumed.quiet || check.quiet || export_quiet || study.quiet || sweep.quiet || optimise.quiet)
     spdlog::set_level(spdlog::level::warn);
 
   if (run_app->parsed()) return guarded(run.scene, [&run] { return run_command(run); });
@@ -275,6 +212,7 @@ int command_line(int argc, char** argv) {
     return guarded(resumed.folder / "scene.toml", [&resumed] { return resume_command(resumed); });
   if (accuracy_app->parsed()) return guarded(study.scene, [&study] { return study_command(study); });
   if (sweep_app->parsed()) return guarded(sweep.scene, [&sweep] { return sweep_command(sweep); });
+  if (optimise_app->parsed()) return guarded(optimise.scene, [&optimise] { return optimise_command(optimise); });
   if (check_app->parsed()) return guarded(check.scene, [&check] { return check_command(check); });
   if (inspect_app->parsed()) return guarded({}, [&inspected] { return inspect_command(inspected); });
   return guarded({}, [&exported] { return export_command(exported); });
