@@ -25,6 +25,7 @@ std::vector<std::string> numbers_of(const Plan& plan) {
   record.plan = &plan;
   record.steps = plan.steps;
   record.time = plan.scene.time.duration;
+  record.end.time = record.time;
   return CaseNumbers(summary_text(record)).names();
 }
 

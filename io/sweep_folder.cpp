@@ -52,6 +52,10 @@ std::vector<std::string> differences(const Json& there, const FolderIdentity& he
   return found;
 }
 
+std::string in_words(const std::string& command) {
+  return command == "optimise" ? "optimisation" : command;
+}
+
 fs::path mark_of(const fs::path& folder, const std::string& command) {
   return folder / (command + ".of.json");
 }
@@ -63,7 +67,7 @@ void demand_the_same(const fs::path& folder, const fs::path& mark, const FolderI
       there.is_object() ? differences(there, identity) : std::vector<std::string>{mark.string() + " is damaged"};
   if (found.empty()) return;
   throw UsageError(fmt::format("{}: holds another {} ({}); choose another folder with -o, or replace it with --force",
-                               folder.string(), identity.command, fmt::join(found, "; ")));
+                               folder.string(), in_words(identity.command), fmt::join(found, "; ")));
 }
 
 /// A folder that is not there yet, or empty, or that --force lets be added to; never one of a run or another command.
@@ -77,7 +81,7 @@ void demand_room(const fs::path& folder, const std::string& command, bool force)
                             file == "study.toml" || file.ends_with(".of.json");
     if (!force || of_another)
       throw UsageError(fmt::format("{}: holds something that is no {} ({}); choose another folder with -o{}",
-                                   folder.string(), command, file, of_another ? "" : ", or add to it with --force"));
+                                   folder.string(), in_words(command), file, of_another ? "" : ", or add to it with --force"));
   }
 }
 
