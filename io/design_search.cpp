@@ -25,13 +25,9 @@ DesignSearch::DesignSearch(const SceneDocument& document, std::string name, std:
                            const OptimiseOptions& options, std::function<bool(const std::vector<CaseJob>&)> run)
     : document_(document), name_(std::move(name)), folder_(std::move(folder)), options_(options), run_(std::move(run)),
       keys_(parse_over(options.over, options.overrides)) {
-  if (!options.keep_total_mass) return;
   std::vector<std::string> names;
   for (const FreeKey& key : keys_) names.push_back(key.key);
-  kept_.emplace(document, names);
-}
-
-void DesignSearch::search() {
+  if (options.keep_total_mass) kept_.emplace(document, names);
   // As many as a simplex needs, and the scene itself, so that it is known what a better design gains.
   const auto most = static_cast<std::size_t>(options_.evaluations);
   std::vector<double> own;
@@ -39,20 +35,22 @@ void DesignSearch::search() {
     const std::optional<double> value = number_in(document_.text, key.key);
     if (value && *value >= key.low && *value <= key.high) own.push_back(key.share_of(*value));
   }
-  std::vector<CaseJob> jobs;
-  if (own.size() == keys_.size()) add(own, "scene", jobs);
+  if (own.size() == keys_.size()) add(own, "scene", start_jobs_);
   const std::size_t start = std::min(2 * keys_.size() + 2, most);
   for (std::size_t k = 1; evaluations_.size() < start && k < 20 * start; ++k)
-    add(halton_point(k, keys_.size()), "start", jobs);
+    add(halton_point(k, keys_.size()), "start", start_jobs_);
   start_ = evaluations_.size();
-  const bool whole = run_(jobs);
+  if (!start_jobs_.empty()) return;
+  if (!evaluations_.front().design.problems.empty()) throw SceneError(evaluations_.front().design.problems);
+  throw UsageError("no design of the start can be run; the first: " + evaluations_.front().design.fault);
+}
+
+void DesignSearch::search() {
+  const bool whole = run_(start_jobs_);
   for (Evaluation& one : evaluations_) look_at(one);
   if (!whole) throw SearchInterrupted();
-  if (best_index() == evaluations_.size()) {
-    const Evaluation& first = evaluations_.front();
-    if (!first.design.problems.empty()) throw SceneError(first.design.problems);
-    throw UsageError("no design of the start can be run; the first: " + first.error);
-  }
+  if (best_index() == evaluations_.size())
+    throw GuardError("no design of the start has a result; the first: " + evaluations_.front().error);
   search_from_best();
   tell_apart_the_best();
 }

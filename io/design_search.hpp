@@ -34,11 +34,12 @@ struct SearchInterrupted {};
 
 class DesignSearch {
 public:
-  /// `run`: runs jobs; false if it was asked to stop.
+  /// `run`: runs jobs; false if it was asked to stop. Throws UsageError, SceneError (no design of the start is a
+  /// scene).
   DesignSearch(const SceneDocument& document, std::string name, std::filesystem::path folder,
                const OptimiseOptions& options, std::function<bool(const std::vector<CaseJob>&)> run);
 
-  /// All of it. Throws SearchInterrupted, UsageError (no design of the start can be run), FileError.
+  /// All of it. Throws SearchInterrupted, GuardError (no design of the start has a result), FileError.
   void search();
 
   const std::vector<FreeKey>& keys() const { return keys_; }
@@ -53,10 +54,8 @@ public:
   static MeanAndError difference(const Evaluation& a, const Evaluation& b);
 
 private:
-  void evaluate(const std::vector<std::vector<double>>& points, const std::string& part);
   void add(const std::vector<double>& point, const std::string& part, std::vector<CaseJob>& jobs);
   void look_at(Evaluation& evaluation);
-  std::size_t find(const std::vector<double>& point) const;
   std::string key_of(const std::vector<double>& point) const;
   void search_from_best();
   double objective(const std::vector<double>& point);
@@ -75,6 +74,7 @@ private:
   std::vector<Evaluation> evaluations_;
   std::map<std::string, std::size_t> known_; ///< values -> evaluation
   std::size_t start_ = 0;                    ///< evaluations before NLopt's
+  std::vector<CaseJob> start_jobs_;
   std::string reason_;
   std::exception_ptr thrown_; ///< by the objective, on its way past NLopt
 };
