@@ -13,8 +13,9 @@ test_packages=("${build_packages[@]}" binutils clang-14 clang-format-14 clang-ti
 
 paper_packages=("${build_packages[@]}" doctest-dev python3 python3-h5py python3-matplotlib python3-numpy)
 
-# Large: what ParaView makes of snapshots, and LIGGGHTS beside us; without them those tests are skipped.
-full_test_packages=("${test_packages[@]}" liggghts paraview python3-paraview)
+# Large: what ParaView makes of snapshots, and LIGGGHTS beside us; without them those tests are skipped. Slurm: a sweep as a
+# job array.
+full_test_packages=("${test_packages[@]}" liggghts munge paraview python3-paraview slurm-client slurmctld slurmd)
 
 # The interpreter that the python3-* packages are for; another may come first in PATH.
 python=/usr/bin/python3
