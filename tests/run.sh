@@ -116,10 +116,10 @@ check format format
 need build_release build release -DGRANDAMP_TESTS=ON
 cases tests build .
 check package bash tests/package/check.sh build
+[ $full -eq 1 ] && check slurm bash tests/slurm/check.sh build/grandamp
 # The paper: all of it takes as long as all the rest, so without --full what one contact and a gas do.
 paper=(fig2 fig6 fig7 fig8)
 [ $full -eq 1 ] && paper=()
-[ $full -eq 1 ] && check slurm bash tests/slurm/check.sh build/grandamp
 check paper env GRANDAMP_PAPER_RESULTS="$PWD/$logs/paper" bash tests/paper/run.sh "${paper[@]}"
 if [ "$(uname -m)" = x86_64 ]; then
   check portable_symbols bash tests/portability/check_symbols.sh build
