@@ -81,7 +81,8 @@ void demand_room(const fs::path& folder, const std::string& command, bool force)
                             file == "study.toml" || file.ends_with(".of.json");
     if (!force || of_another)
       throw UsageError(fmt::format("{}: holds something that is no {} ({}); choose another folder with -o{}",
-                                   folder.string(), in_words(command), file, of_another ? "" : ", or add to it with --force"));
+                                   folder.string(), in_words(command), file,
+                                   of_another ? "" : ", or add to it with --force"));
   }
 }
 

@@ -211,8 +211,8 @@ TEST_CASE("sweep: interrupted and started again it repeats nothing, and the numb
 TEST_CASE("sweep: wall time ends it with checkpoints, a killed run is tried again") {
   const TemporaryFolder folder;
   put_scene(folder);
-  const std::string command = "sweep small.toml --vary structure.damping=0.05,0.1 --set time.duration=1.5 -o sweep";
-  const Outcome over = program(folder, command + " --max-wall 0.3");
+  const std::string command = "sweep small.toml --vary structure.damping=0.05,0.1 --set time.duration=3.0 -o sweep";
+  const Outcome over = program(folder, command + " --max-wall 0.1");
   INFO(over.errors);
   CHECK(over.status == 130);
   const Outcome killed = shell(
