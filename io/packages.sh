@@ -3,7 +3,8 @@
 
 # libjs-*: embedded in the pages of `grandamp report`.
 build_packages=(g++ cmake ninja-build libcli11-dev libeigen3-dev libfmt-dev libhdf5-dev libjs-chart.js libjs-dygraphs
-  libjs-three libspdlog-dev libtbb-dev libtomlplusplus-dev libxsimd-dev libxxhash-dev nlohmann-json3-dev)
+  libjs-three libnlopt-cxx-dev libnlopt-dev libspdlog-dev libtbb-dev libtomlplusplus-dev libxsimd-dev libxxhash-dev
+  nlohmann-json3-dev)
 
 demo_packages=("${build_packages[@]}" python3 python3-matplotlib python3-numpy)
 
@@ -15,8 +16,9 @@ test_packages=("${build_packages[@]}" binutils chromium clang-14 clang-format-14
 
 paper_packages=("${build_packages[@]}" doctest-dev python3 python3-h5py python3-matplotlib python3-numpy)
 
-# Large: what ParaView makes of snapshots, and LIGGGHTS beside us; without them those tests are skipped.
-full_test_packages=("${test_packages[@]}" liggghts paraview python3-paraview)
+# Large: what ParaView makes of snapshots, and LIGGGHTS beside us; without them those tests are skipped. Slurm: a sweep as a
+# job array.
+full_test_packages=("${test_packages[@]}" liggghts munge paraview python3-paraview slurm-client slurmctld slurmd)
 
 # The interpreter that the python3-* packages are for; another may come first in PATH.
 python=/usr/bin/python3

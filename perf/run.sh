@@ -11,16 +11,17 @@
 #   perf/run.sh checkpoint     what a checkpoint costs, beside the disk's own speed
 #   perf/run.sh long_run       memory and rate as time goes
 #   perf/run.sh accuracy       what accuracy costs in time, Table 5 and 20,000 granules
+#   perf/run.sh sweep          eight cases, one and two at a time
 #   perf/run.sh all            all of these
 # REPEATS=N: runs in turn (3); QUICK=1: everything small, to see that it works; GRANDAMP_PERF_BUILD: the build folder.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source io/packages.sh
-names=(kernels scenes peers sizes threads paper_table4 paper_fig14 effects checkpoint long_run accuracy)
+names=(kernels scenes peers sizes threads paper_table4 paper_fig14 effects checkpoint long_run accuracy sweep)
 wanted=("$@")
 [ "${1-}" = all ] && wanted=("${names[@]}")
 for name in "${wanted[@]:-none}"; do
-  [[ " ${names[*]} " == *" $name "* ]] || { sed -n '2,15p' "$0" | cut -c3-; exit 2; }
+  [[ " ${names[*]} " == *" $name "* ]] || { sed -n '2,16p' "$0" | cut -c3-; exit 2; }
 done
 
 perf_packages=("${build_packages[@]}" binutils lammps libbenchmark-dev liggghts python3 python3-matplotlib python3-numpy

@@ -117,6 +117,7 @@ need build_release build release -DGRANDAMP_TESTS=ON
 cases tests build .
 check package bash tests/package/check.sh build
 check report bash tests/report/check.sh build $logs/report
+[ $full -eq 1 ] && check slurm bash tests/slurm/check.sh build/grandamp
 # The paper: all of it takes as long as all the rest, so without --full what one contact and a gas do.
 paper=(fig2 fig6 fig7 fig8)
 [ $full -eq 1 ] && paper=()

@@ -1,4 +1,5 @@
 #include "io/commands/commands.hpp"
+#include "io/commands/options.hpp"
 #include "io/run.hpp"
 #include "io/study.hpp"
 #include "io/version.hpp"
@@ -22,28 +23,6 @@ void log_to_standard_error() {
   auto logger = std::make_shared<spdlog::logger>("grandamp", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
   logger->set_pattern("%^%l%$: %v");
   spdlog::set_default_logger(std::move(logger));
-}
-
-void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
-  command.add_option("--set", overrides, "Override a scene key, dotted; list items by index: granules.0.count=100")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
-
-void add_threads(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "Threads; default: chosen by the number of granules")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4096));
-}
-
-void add_isa(CLI::App& command, std::string& isa) {
-  command.add_option("--isa", isa, "Instruction set of the kernels; default: the best of this machine")
-      ->check(CLI::IsMember({"generic", "avx2", "avx512"}));
-}
-
-void add_quiet(CLI::App& command, bool& quiet) {
-  command.add_flag("--quiet", quiet, "Only warnings and errors");
 }
 
 void add_profile(CLI::App& command, bool& profile) {
@@ -222,8 +201,14 @@ int command_line(int argc, char** argv) {
       "accuracy", "Error against time over step, integrator, precision, list, friction, stiffness");
   add_study(*accuracy_app, study);
 
-  refuse(app, "sweep", "A case per point of a grid");
-  refuse(app, "optimise", "The best design");
+  SweepArguments sweep;
+  CLI::App* const sweep_app = app.add_subcommand("sweep", "A run per point of a grid of scene keys, several at a time");
+  add_sweep(*sweep_app, sweep);
+
+  OptimiseArguments optimise;
+  CLI::App* const optimise_app = app.add_subcommand("optimise", "The design for which a number of the summary is best");
+  add_optimise(*optimise_app, optimise);
+
 
   try {
     app.parse(argc, argv);
@@ -236,13 +221,16 @@ int command_line(int argc, char** argv) {
     spdlog::error("{}", error.what());
     return exit_usage;
   }
-  if (run.quiet || resumed.quiet || check.quiet || export_quiet || report_quiet || study.quiet)
+  if (run.quiet || resumed.quiet || check.quiet || export_quiet || report_quiet || study.quiet || sweep.quiet ||
+      optimise.quiet)
     spdlog::set_level(spdlog::level::warn);
 
   if (run_app->parsed()) return guarded(run.scene, [&run] { return run_command(run); });
   if (resume_app->parsed())
     return guarded(resumed.folder / "scene.toml", [&resumed] { return resume_command(resumed); });
   if (accuracy_app->parsed()) return guarded(study.scene, [&study] { return study_command(study); });
+  if (sweep_app->parsed()) return guarded(sweep.scene, [&sweep] { return sweep_command(sweep); });
+  if (optimise_app->parsed()) return guarded(optimise.scene, [&optimise] { return optimise_command(optimise); });
   if (check_app->parsed()) return guarded(check.scene, [&check] { return check_command(check); });
   if (report_app->parsed()) return guarded({}, [&reported] { return report_command(reported); });
   if (inspect_app->parsed()) return guarded({}, [&inspected] { return inspect_command(inspected); });

@@ -61,6 +61,39 @@ struct StudyArguments {
   bool json = false;
 };
 
+struct SweepArguments {
+  std::filesystem::path scene;
+  std::filesystem::path folder;       ///< empty: the scene's stem
+  std::vector<std::string> overrides; ///< KEY=VALUE
+  std::vector<std::string> vary;      ///< KEY=START:STOP:COUNT or KEY=a,b,c
+  std::string keep;                   ///< "total_mass" or empty
+  int seeds = 1;
+  std::optional<int> index, of;
+  int threads = 0; ///< 0: what the process may use
+  std::string isa;
+  double max_wall = 0.0; ///< s; 0: no end
+  bool force = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+struct OptimiseArguments {
+  std::filesystem::path scene;
+  std::filesystem::path folder;       ///< empty: the scene's stem
+  std::vector<std::string> overrides; ///< KEY=VALUE
+  std::string minimise, maximise;     ///< a number of the summary; one of the two
+  std::vector<std::string> over;      ///< KEY=A:B
+  std::string keep;                   ///< "total_mass" or empty
+  int seeds = 3;
+  int evaluations = 20;
+  int threads = 0; ///< 0: what the process may use
+  std::string isa;
+  double max_wall = 0.0; ///< s; 0: no end
+  bool force = false;
+  bool quiet = false;
+  bool json = false;
+};
+
 struct ExportArguments {
   std::filesystem::path folder;
   std::string what;               ///< "history", "granules", "response" or "decay"
@@ -85,6 +118,8 @@ int export_command(const ExportArguments& arguments);
 int report_command(const ReportArguments& arguments);
 int inspect_command(const InspectArguments& arguments);
 int study_command(const StudyArguments& arguments);
+int sweep_command(const SweepArguments& arguments);
+int optimise_command(const OptimiseArguments& arguments);
 
 /// Throws UsageError unless this machine runs the instruction set of that name; empty: none asked for.
 void require_isa(const std::string& isa);

@@ -1,0 +1,44 @@
+// `grandamp sweep`: a run per point of a grid of scene keys and per seed, side by side; tables and pictures of them
+// all.
+#pragma once
+
+#include "io/scene_file.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace grandamp {
+
+struct SweepOptions {
+  std::vector<std::string> vary;      ///< KEY=START:STOP:COUNT[:log] or KEY=a,b,c
+  std::vector<std::string> overrides; ///< KEY=VALUE that the document has already: only to refuse what is varied too
+  int seeds = 1;                      ///< runs of each point, from the scene's seed on
+  bool keep_total_mass = false;
+  int index = 0, of = 1;                           ///< which part of how many
+  int threads = 0;                                 ///< in all; 0: what the process may use
+  std::string isa;                                 ///< empty: the best
+  double max_wall = 0.0;                           ///< s after which it stops as if interrupted; 0: no end
+  bool force = false;                              ///< replace the sweep that the folder holds
+  std::function<void(const std::string&)> tell;    ///< what will be run
+  std::function<void(const std::string&)> warning; ///< a case that failed, as the sweep goes
+  std::function<void(const struct CaseProgress&)> progress;
+  std::function<bool()> stop_requested;
+};
+
+struct SweepResult {
+  bool interrupted = false;
+  std::size_t planned = 0, done = 0, failed = 0; ///< of the whole sweep
+  std::size_t part_planned = 0, part_done = 0, part_failed = 0;
+  std::string json; ///< the text of sweep.json
+};
+
+/// Runs what `folder` does not hold yet and writes the tables of all that it then holds. `name`: the scene's file, for
+/// messages. Throws UsageError (bad options; the folder holds something else), SceneError (no point of the grid is a
+/// scene that can be run), FileError.
+SweepResult sweep(const SceneDocument& document, const std::string& name, const std::filesystem::path& folder,
+                  const SweepOptions& options);
+
+} // namespace grandamp
