@@ -88,6 +88,7 @@ void Recorder::go() {
   record.time = simulation_.time();
   record.verlet = simulation_.verlet();
   record.guards = simulation_.guards();
+  record.step_review = simulation_.step_review();
   record.response = simulation_.response();
   timed(profile(), Phase::output, 0, [&] { results_.close(); });
   record.wall_time = wall_time();

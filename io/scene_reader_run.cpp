@@ -19,7 +19,7 @@ void read_step(TableReader& table, TimeControl& time) {
   } else if (key == "steps_per_contact") {
     time.steps_per_contact = table.number(key, {1.0, 1e6, true, true}).value_or(time.steps_per_contact);
   } else if (key == "step") {
-    time.step = table.number_or_word(key, positive, "adaptive");
+    time.step = table.number_or_word(key, positive, "adaptive", time.adaptive);
     if (!time.step) return;
     if (time.duration > 0.0 && *time.step > time.duration)
       table.wrong(key, "longer than the run", fmt::format("above 0 and at most the duration, {} s", time.duration));

@@ -110,10 +110,6 @@ void TableReader::missing(std::string_view key, const std::string& why, const st
   reading_->add(finding(key, "missing: " + why, allowed));
 }
 
-void TableReader::not_yet(std::string_view key, const std::string& what, const std::string& allowed) {
-  reading_->add(finding(key, "not yet: " + what + " is planned, and this version cannot do it", allowed));
-}
-
 void TableReader::idle(std::string_view key, const std::string& why, const std::string& allowed) {
   pass(key);
   if (!has(key)) return;
@@ -198,10 +194,15 @@ std::optional<double> TableReader::number(std::string_view key, const Range& ran
   return finite(*node, key, range, range.text());
 }
 
-std::optional<double> TableReader::number_or_word(std::string_view key, const Range& range, std::string_view later) {
+std::optional<double> TableReader::number_or_word(std::string_view key, const Range& range, std::string_view word,
+                                                  bool& said) {
   const toml::node* node = ask(key);
-  if (node == nullptr || node->value_exact<std::string>() != later) return number(key, range);
-  not_yet(key, fmt::format("\"{}\"", later), range.text());
+  if (node == nullptr) return std::nullopt;
+  const std::string allowed = fmt::format("{}, or \"{}\"", range.text(), word);
+  said = node->value_exact<std::string>() == word;
+  if (said) return std::nullopt;
+  if (node->is_number()) return finite(*node, key, range, allowed);
+  wrong_type(key, allowed);
   return std::nullopt;
 }
 
@@ -340,8 +341,7 @@ std::vector<const toml::table*> TableReader::tables(std::string_view key) {
   return result;
 }
 
-std::optional<std::size_t> TableReader::word(std::string_view key, const std::vector<std::string_view>& allowed,
-                                             const std::vector<std::string_view>& later) {
+std::optional<std::size_t> TableReader::word(std::string_view key, const std::vector<std::string_view>& allowed) {
   const toml::node* node = ask(key);
   if (node == nullptr) return std::nullopt;
   std::string list;
@@ -353,10 +353,6 @@ std::optional<std::size_t> TableReader::word(std::string_view key, const std::ve
   const std::string value = *node->value_exact<std::string>();
   const auto found = std::find(allowed.begin(), allowed.end(), value);
   if (found != allowed.end()) return static_cast<std::size_t>(found - allowed.begin());
-  if (std::find(later.begin(), later.end(), value) != later.end()) {
-    not_yet(key, fmt::format("\"{}\"", value), list);
-    return std::nullopt;
-  }
   const std::string_view nearest = nearest_name(value, allowed);
   wrong(key, nearest.empty() ? "unknown word" : fmt::format("unknown word, perhaps \"{}\"", nearest), list);
   return std::nullopt;

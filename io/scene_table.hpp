@@ -76,8 +76,8 @@ public:
   bool has(std::string_view key) const;
 
   std::optional<double> number(std::string_view key, const Range& range = any_number);
-  /// A number, or a word of the contract that this version cannot do.
-  std::optional<double> number_or_word(std::string_view key, const Range& range, std::string_view later);
+  /// A number, or one word; `said`: the word.
+  std::optional<double> number_or_word(std::string_view key, const Range& range, std::string_view word, bool& said);
   std::optional<std::array<double, 2>> pair(std::string_view key); ///< two finite numbers
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t low, std::int64_t high);
   std::optional<bool> flag(std::string_view key);
@@ -89,13 +89,12 @@ public:
   const toml::table* table(std::string_view key); ///< null: left out, or no table (a fault)
   std::vector<const toml::table*> tables(std::string_view key);
 
-  /// One of some words. `later`: words of the contract that this version cannot do.
+  /// One of some words.
   template <class Enum>
-  std::optional<Enum> choice(std::string_view key, std::initializer_list<std::pair<std::string_view, Enum>> words,
-                             std::initializer_list<std::string_view> later = {}) {
+  std::optional<Enum> choice(std::string_view key, std::initializer_list<std::pair<std::string_view, Enum>> words) {
     std::vector<std::string_view> allowed;
     for (const auto& word : words) allowed.push_back(word.first);
-    const std::optional<std::size_t> index = word(key, allowed, std::vector<std::string_view>(later));
+    const std::optional<std::size_t> index = word(key, allowed);
     if (!index) return std::nullopt;
     return (words.begin() + *index)->second;
   }
@@ -109,7 +108,6 @@ public:
   std::string_view one_of(std::initializer_list<std::string_view> keys);
   void missing(std::string_view key, const std::string& why, const std::string& allowed);
   void wrong(std::string_view key, const std::string& message, const std::string& allowed);
-  void not_yet(std::string_view key, const std::string& what, const std::string& allowed);
 
   /// Every key that nobody asked for is a fault.
   void finish();
@@ -121,8 +119,7 @@ private:
                                const std::string& allowed);
   std::optional<Vector3> vector_of(const toml::node& node, std::string_view key, const Range& each,
                                    const std::string& item);
-  std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& allowed,
-                                  const std::vector<std::string_view>& later);
+  std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& allowed);
   Finding finding(std::string_view key, const std::string& message, const std::string& allowed) const;
 
   SceneReading* reading_;

@@ -160,6 +160,8 @@ std::string summary_text(const RunRecord& record) {
   summary["duration"] = simulated(record);
   summary["time_step"] = plan.time_step;
   summary["steps"] = record.steps;
+  if (plan.scene.time.adaptive)
+    summary["step_review"] = {{"refined_steps", record.step_review.refined}, {"parts", record.step_review.parts}};
   if (plan.step_choice) summary["step_choice"] = step_choice_json(*plan.step_choice);
   summary["contact_duration"] = plan.contact_duration;
   summary["impact_speed"] = plan.impact_speed;

@@ -25,6 +25,7 @@ struct RunRecord {
   Sample end;                     ///< at `time`, or the last one before a guard stopped the run
   VerletStatistics verlet;
   GuardStatistics guards;
+  StepReviewStatistics step_review;
   ResponseStatistics response;
   const Profile* profile = nullptr;                      ///< null: none was asked for
   const FrequencyResponse* frequency_response = nullptr; ///< null: the run gives none

@@ -1,5 +1,6 @@
 #include "solver/guards.hpp"
 
+#include "solver/step_review.hpp"
 #include "solver/time_step.hpp"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ std::string granule_text(const GuardView& view, std::uint32_t row) {
 }
 
 double contact_steps(const GuardView& view, double closing_speed) {
-  return contact_duration_at(view.plan.contact_duration, view.plan.impact_speed, closing_speed) / view.time_step;
+  return contact_duration_at(view.plan.contact_duration, view.plan.impact_speed, closing_speed) / view.part;
 }
 
 /// The listed contact with the deepest overlap, in words; empty if none is listed.
@@ -112,7 +113,8 @@ std::string list_advice(const Plan& plan) {
 
 double closing_speed_limit(const Plan& plan) {
   if (plan.granules == 0) return std::numeric_limits<double>::infinity();
-  const double steps = plan.contact_duration / plan.time_step;
+  double steps = plan.contact_duration / plan.time_step;
+  if (plan.scene.time.adaptive) steps *= static_cast<double>(StepReview::parts.back());
   return plan.impact_speed * std::pow(steps / std::min(fewest_steps_per_contact, 0.95 * steps), 5.0);
 }
 
@@ -142,7 +144,7 @@ GuardError too_fast(const GuardView& view, double closing_speed) {
   return GuardError(fmt::format(
       "granules closed at {:.4g} m/s {}; the time step of {:.4g} s rests on {:.4g} m/s, and such a contact lasts only "
       "{:.2g} steps; set time.impact_speed = {:.3g} (or raise time.steps_per_contact)",
-      closing_speed, when(view), view.time_step, view.plan.impact_speed, contact_steps(view, closing_speed),
+      closing_speed, when(view), view.part, view.plan.impact_speed, contact_steps(view, closing_speed),
       1.5 * closing_speed));
 }
 

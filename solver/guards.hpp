@@ -30,7 +30,8 @@ struct GuardView {
   const VerletList& list;
   const std::vector<Wall>& walls;
   std::int64_t step_number;
-  double time_step;
+  double time_step; ///< of the step numbers
+  double part;      ///< in force: of an adaptive step's part
 };
 
 /// The closing speed at which a contact would be followed by too few steps, m/s.

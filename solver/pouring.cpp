@@ -25,6 +25,7 @@ Plan pouring_plan(const Plan& plan) {
   scene.output.window.reset();
   scene.time.step.reset();
   scene.time.error.reset();
+  scene.time.adaptive = false;
   scene.time.impact_speed.reset();
   scene.time.steps_per_contact = 8.0;
   scene.time.integrator = Integrator::leapfrog;

@@ -1,6 +1,7 @@
 #include "solver/run_state.hpp"
 
 #include "solver/measures.hpp"
+#include "solver/step_review.hpp"
 
 #include <cmath>
 #include <type_traits>
@@ -87,6 +88,10 @@ void check_state(const RunState& s, const Plan& plan) {
   demand_range("step_number", s.step_number, 0, s.steps);
   if (!(s.window[0] >= 0.0 && s.window[0] < s.window[1])) refuse("the window of the statistics is none");
   check_granules(s, plan);
+  const std::int64_t levels = plan.scene.time.adaptive ? static_cast<std::int64_t>(StepReview::parts.size()) - 1 : 0;
+  demand_range("review/level", s.review_level, 0, levels);
+  demand_range("review/finest", s.review_finest, 0, levels);
+  if (!(s.review_speed >= 0.0)) refuse("review/speed is negative");
   demand_length("enclosure/modes", s.enclosure_modes.size(),
                 plan.scene.structure ? 2 * plan.scene.structure->modes.size : 0);
   for (const double coordinate : s.enclosure_modes)

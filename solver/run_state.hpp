@@ -79,6 +79,10 @@ struct RunState {
   GuardStatistics guards;
   bool warned_overlap = false;
   bool warned_closing = false;
+  std::int64_t review_level = 0;
+  double review_speed = 0.0;
+  std::int64_t review_refined = 0;
+  std::int64_t review_finest = 0;
   std::int64_t balance_samples = 0;
   double balance_first = 0.0;
   double balance_gravitational = 0.0;
@@ -195,6 +199,10 @@ template <class State, class Field> void visit_fields(State& s, Field&& field) {
   field(FieldInfo{"guards/warned_overlap", "1", "the warning of deep overlaps was given"}, s.warned_overlap);
   field(FieldInfo{"guards/warned_closing", "1", "the warning of closing speeds was given"}, s.warned_closing);
 
+  field(FieldInfo{"review/level", "1", "adaptive step: taken in 3^level parts"}, s.review_level);
+  field(FieldInfo{"review/speed", "m/s", "adaptive step: largest since the last review"}, s.review_speed);
+  field(FieldInfo{"review/refined", "1", "adaptive step: steps taken in parts, so far"}, s.review_refined);
+  field(FieldInfo{"review/finest", "1", "adaptive step: largest level so far"}, s.review_finest);
   field(FieldInfo{"guards/balance_samples", "1", "of the energy balance, so far"}, s.balance_samples);
   field(FieldInfo{"guards/balance_first", "J", "stored energy less work, with losses, of the first one"},
         s.balance_first);

@@ -164,6 +164,7 @@ struct TimeControl {
   double duration = 0.0;              ///< s
   double steps_per_contact = 8.0;     ///< k in T_c / k
   std::optional<double> step;         ///< s, instead of steps_per_contact
+  bool adaptive = false;              ///< step = "adaptive": in parts, where contacts are faster than expected
   std::optional<double> error;        ///< of a contact, instead of steps_per_contact (solver/contact_error.hpp)
   std::optional<double> impact_speed; ///< closing speed for T_c, m/s; left out: estimated
   Integrator integrator = Integrator::leapfrog;

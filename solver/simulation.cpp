@@ -266,6 +266,10 @@ VerletStatistics Simulation::verlet() const {
   return v;
 }
 
+StepReviewStatistics Simulation::step_review() const {
+  const StepReview::State& review = state_->stepper.review().state();
+  return {review.refined, StepReview::parts[static_cast<std::size_t>(review.finest)]};
+}
 GuardStatistics Simulation::guards() const {
   return state_->stepper.guards();
 }

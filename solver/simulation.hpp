@@ -72,6 +72,12 @@ struct GuardStatistics {
   std::int64_t escaped = 0;
 };
 
+/// What an adaptive step came to.
+struct StepReviewStatistics {
+  std::int64_t refined = 0; ///< steps that were taken in parts
+  std::int64_t parts = 1;   ///< the most that a step was taken in
+};
+
 /// One cycle of a free vibration.
 struct VibrationCycle {
   double start = 0.0;                     ///< s
@@ -144,6 +150,7 @@ public:
 
   VerletStatistics verlet() const;
   GuardStatistics guards() const;
+  StepReviewStatistics step_review() const;
   ResponseStatistics response() const; ///< of the steps so far inside the window
   /// Times the phases of the steps to come into `profile` (solver/profile.hpp); null: no more.
   void set_profile(Profile* profile);

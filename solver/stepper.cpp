@@ -44,15 +44,56 @@ Ledger Stepper::ledger_at(const StepRecord& record) const {
 }
 
 const StepRecord& Stepper::step(bool energies) {
+  audit_due_ = true;
+  const std::size_t level = review_.level_of(step_number_);
+  if (level > 0) return step_in_parts(level, energies);
+  part_number_ = step_number_;
+  take_part(energies);
+  ++step_number_;
+  return record_;
+}
+
+void Stepper::take_part(bool energies) {
   rebuild_if_due();
   audit_if_due();
   record_ = advance(energies);
+  ++kick_number_;
   // The first half of step 0 lies before t = 0.
   const Ledger before = first_half(record_);
   for (const auto term : ledger_terms)
     ledger_.*term += record_.dissipated.*term - (step_number_ == 0 ? before.*term : 0.0);
+}
+
+const StepRecord& Stepper::step_in_parts(std::size_t level, bool energies) {
+  const std::int64_t parts = StepReview::parts[level];
+  part_ = time_step_ / static_cast<double>(parts);
+  level_ = level;
+  // Velocities are where the first part wants them, at t_(n-1/2), positions half a step less half a part too late.
+  const double early = 0.5 * (time_step_ - part_);
+  drift(-early);
+  StepRecord middle;
+  for (std::int64_t p = 0; p < parts; ++p) {
+    part_number_ = parts * step_number_ - parts / 2 + p;
+    take_part(energies && p == parts / 2);
+    if (p == parts / 2) middle = record_;
+  }
+  drift(early);
+  part_ = time_step_;
+  level_ = 0;
+  record_ = middle;
   ++step_number_;
   return record_;
+}
+
+void Stepper::drift(double time) {
+  double fastest = 0.0;
+  for (std::uint32_t i = 0; i < granules_.count(); ++i) {
+    const double* v = granules_.motion[i].velocity;
+    double* p = &granules_.position[i].x;
+    for (int k = 0; k < 3; ++k) p[k] += time * v[k];
+    fastest = std::max(fastest, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  }
+  age_list(std::sqrt(fastest), std::abs(time));
 }
 
 StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_counts) {
@@ -68,6 +109,8 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_co
   const EnclosureState enclosure = enclosure_;
   const ListAge age = age_;
   const GuardStatistics guards = guards_;
+  const StepReview review = review_;
+  part_number_ = step_number_;
   const SpringMemory springs = springs_;
   granules_.keep_shares(0, granules_.count());
 
@@ -90,6 +133,7 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_co
   enclosure_ = enclosure;
   age_ = age;
   guards_ = guards;
+  review_ = review;
   springs_ = springs;
   if (!keep_counts) granules_.clear_forces(0, granules_.count());
   return record;
@@ -101,14 +145,14 @@ StepRecord Stepper::advance(bool energies) {
   results_.assign(list_.segments().size(), {});
   for (SegmentResult& result : results_) {
     result.pairs.max_overlap = result.walls.max_overlap = guards_.max_overlap;
-    result.pairs.max_closing = result.walls.max_closing = guards_.max_closing;
+    if (!review_.on()) result.pairs.max_closing = result.walls.max_closing = guards_.max_closing;
   }
   const double reaction = wall_forces(kernels);
   EnclosureStep enclosure;
   timed(profile_, Phase::structure, 0,
-        [&] { enclosure = motion_.advance(enclosure_, step_number_, reaction, wall_force()); });
+        [&] { enclosure = mover().advance(enclosure_, part_number_, reaction, wall_force()); });
   Vector3 kick = plan_.scene.gravity;
-  for (std::size_t k = 0; k < 3; ++k) kick[k] = kick[k] * time_step_ - enclosure.velocity_change[k];
+  for (std::size_t k = 0; k < 3; ++k) kick[k] = kick[k] * part_ - enclosure.velocity_change[k];
   boundary_forces(kernels);
   sweep(kernels, kick, enclosure.mean_velocity);
   StepRecord record = collect(reaction, enclosure);
@@ -122,7 +166,7 @@ double Stepper::wall_forces(const Kernels& kernels) {
   shared.law = wall_laws_.front();
   shared.laws = wall_laws_.data();
   shared.friction_inverse_mass = friction_inverse_mass_;
-  shared.friction_cap = friction_cap_;
+  shared.friction_cap = friction_cap_ * (time_step_ / part_);
   team_.each(list_.segments().size(), [&](std::size_t s) {
     Segment& segment = list_.segments()[s];
     kernels::WallArguments a = shared;
@@ -166,15 +210,15 @@ kernels::PairArguments Stepper::pair_arguments(Segment& segment) {
   a.populations = contacts_.populations;
   a.radius = plan_.largest_radius;
   a.mass = plan_.scene.populations.empty() ? 0.0 : 1.0 / granules_.motion[0].inverse_mass;
-  a.friction_cap = friction_cap_;
+  a.friction_cap = friction_cap_ * (time_step_ / part_);
   return a;
 }
 
 kernels::SpringArguments Stepper::spring_arguments(std::size_t segment, SpringMemory::Rows& rows, std::size_t first,
                                                    const std::vector<kernels::SpringLawRow>& laws) {
-  kernels::SpringArguments a = SpringMemory::arguments(rows, springs_.of(segment).slots, first, step_number_);
+  kernels::SpringArguments a = SpringMemory::arguments(rows, springs_.of(segment).slots, first, kick_number_);
   // What is in touch at t = 0 is not loaded yet.
-  a.time_step = step_number_ > 0 ? time_step_ : 0.0;
+  a.time_step = step_number_ > 0 ? part_ : 0.0;
   a.law = laws.front();
   a.laws = laws.data();
   return a;
@@ -200,7 +244,7 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
     kernels::PairArguments pairs = pair_arguments(segment);
     kernels::MotionArguments motion;
     motion.granules = pairs.granules;
-    motion.time_step = time_step_;
+    motion.time_step = part_;
     std::copy_n(kick.begin(), 3, motion.kick);
     std::copy_n(frame_velocity.begin(), 3, motion.frame_velocity);
     std::uint32_t touched = segment.first;
@@ -247,19 +291,22 @@ StepRecord Stepper::collect(double reaction, const EnclosureStep& enclosure) {
     for (const ContactResult* contact : {&result.pairs, static_cast<const ContactResult*>(&result.walls)}) {
       guards_.max_overlap = std::max(guards_.max_overlap, contact->max_overlap);
       guards_.max_closing = std::max(guards_.max_closing, contact->max_closing);
+      review_.met(contact->max_closing);
     }
     max_speed_squared = std::max(max_speed_squared, result.motion.max_speed_squared);
     sum_speed_squared += result.motion.sum_speed_squared;
   }
   const double max_speed = std::sqrt(max_speed_squared);
   guards_.max_speed = std::max(guards_.max_speed, max_speed);
-  age_list(max_speed);
+  review_.met(max_speed);
+  ++age_.steps;
+  age_list(max_speed, part_);
   watch(sum_speed_squared);
   return record;
 }
 
 void Stepper::watch(double sum_speed_squared) {
-  const GuardView view{plan_, granules_, list_, walls_, step_number_, time_step_};
+  const GuardView view = this->view();
   if (!std::isfinite(sum_speed_squared)) throw not_finite(view, guards_.max_overlap);
   if (guards_.max_overlap > overlap_stop) throw too_deep(view, guards_.max_overlap);
   if (guards_.max_closing > closing_limit_) throw too_fast(view, guards_.max_closing);
@@ -267,7 +314,7 @@ void Stepper::watch(double sum_speed_squared) {
     warned_overlap_ = true;
     warnings_.push_back(deep_overlap_warning(view, guards_.max_overlap));
   }
-  if (guards_.max_closing > plan_.impact_speed && !warned_closing_) {
+  if (guards_.max_closing > plan_.impact_speed && !warned_closing_ && !review_.on()) {
     warned_closing_ = true;
     warnings_.push_back(closing_speed_warning(view, guards_.max_closing));
   }
@@ -275,9 +322,8 @@ void Stepper::watch(double sum_speed_squared) {
 
 // ---- the list ------------------------------------------------------------------------------------------------------
 
-void Stepper::age_list(double max_speed) {
-  ++age_.steps;
-  age_.travelled += max_speed * time_step_;
+void Stepper::age_list(double max_speed, double time) {
+  age_.travelled += max_speed * time;
   if (plan_.scene.verlet.policy != ListPolicy::displacement) return;
   double farthest = 0.0;
   for (std::uint32_t i = 0; i < granules_.count(); ++i) {
@@ -299,7 +345,7 @@ void Stepper::rebuild() {
     build_steps_ += age_.steps;
   }
   std::vector<LoadedSpring> springs;
-  if (remembers() && age_.built) springs = springs_.loaded(list_, granules_, step_number_ - 1, team_);
+  if (remembers() && age_.built) springs = springs_.loaded(list_, granules_, kick_number_ - 1, team_);
   search_.skin = skin_;
   search_.cell_length = std::max(plan_.cell, 2.0 * search_.largest_radius + skin_);
   if (plan_.scene.verlet.policy == ListPolicy::all_pairs)
@@ -307,15 +353,15 @@ void Stepper::rebuild() {
   else
     list_.build(granules_, size_, walls_, search_, team_, profile_);
   for (const Segment& segment : list_.segments()) guards_.escaped += static_cast<std::int64_t>(segment.outside.size());
-  if (guards_.escaped > 0) throw escaped({plan_, granules_, list_, walls_, step_number_, time_step_}, guards_.escaped);
+  if (guards_.escaped > 0) throw escaped(view(), guards_.escaped);
 
-  if (remembers()) springs_.spread(springs, list_, granules_, step_number_ - 1, team_);
+  if (remembers()) springs_.spread(springs, list_, granules_, kick_number_ - 1, team_);
   ++builds_;
   if (granules_.count() > 0) candidates_sum_ += static_cast<double>(list_.candidates()) / granules_.count();
   age_ = {};
   age_.built = true;
   if (plan_.scene.verlet.policy == ListPolicy::predicted)
-    age_.allowed = predicted_interval(plan_.scene.verlet, skin_, largest_laboratory_speed(), time_step_);
+    age_.allowed = predicted_interval(plan_.scene.verlet, skin_, largest_laboratory_speed(), part_);
   if (plan_.scene.verlet.policy == ListPolicy::displacement) {
     built_at_.reset(granules_.position.size());
     std::copy_n(granules_.position.data(), granules_.position.size(), built_at_.data());
@@ -338,7 +384,8 @@ double Stepper::largest_laboratory_speed() const {
 
 void Stepper::audit_if_due() {
   const std::int64_t every = plan_.scene.verlet.audit;
-  if (every > 0 && step_number_ % every == 0) audit_.compare(granules_, list_, walls_, every);
+  if (every > 0 && step_number_ % every == 0 && std::exchange(audit_due_, false))
+    audit_.compare(granules_, list_, walls_, every);
 }
 
 VerletStatistics Stepper::verlet() const {

@@ -7,6 +7,7 @@
 #include "solver/contact_count.hpp"
 #include "solver/enclosure_motion.hpp"
 #include "solver/granules.hpp"
+#include "solver/guards.hpp"
 #include "solver/material.hpp"
 #include "solver/packing.hpp"
 #include "solver/plan.hpp"
@@ -15,6 +16,7 @@
 #include "solver/run_state.hpp"
 #include "solver/simulation.hpp"
 #include "solver/spring_memory.hpp"
+#include "solver/step_review.hpp"
 #include "solver/team.hpp"
 #include "solver/verlet_list.hpp"
 #include "solver/walls.hpp"
@@ -48,6 +50,7 @@ public:
 
   /// One step from t_n to t_(n+1). Throws GuardError.
   const StepRecord& step(bool energies);
+  const StepReview& review() const noexcept { return review_; }
   /// What a step would tell now; afterwards everything is as before, but for a list that was due being rebuilt.
   /// `mean`, if given, receives the velocities at t_n in the enclosure's frame, by row.
   /// `keep_counts`: the contacts met count as those of the step before.
@@ -93,6 +96,13 @@ private:
   void take_half_step_back();
   const Kernels& kernels_for(bool energies) const;
 
+  /// Moves the granules along their half-step velocities for `time` (s).
+  void drift(double time);
+  void take_part(bool energies);
+  const EnclosureMotion& mover() const { return level_ == 0 ? motion_ : motion_in_parts_[level_ - 1]; }
+  const StepRecord& step_in_parts(std::size_t level, bool energies);
+  GuardView view() const { return {plan_, granules_, list_, walls_, step_number_, time_step_, part_}; }
+
   void rebuild_if_due();
   void rebuild();
   double largest_laboratory_speed() const;
@@ -102,7 +112,7 @@ private:
   void boundary_forces(const Kernels& kernels);
   void sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity);
   StepRecord collect(double reaction, const EnclosureStep& enclosure);
-  void age_list(double max_speed);
+  void age_list(double max_speed, double time);
   void watch(double sum_speed_squared);
   StepRecord advance(bool energies);
   Ledger ledger_at(const StepRecord& record) const;
@@ -115,6 +125,7 @@ private:
 
   const Plan plan_;
   double time_step_;
+  double part_; ///< time_step_, or the part of it that is being taken, s
   kernels::InstructionSet isa_;
   Team team_;
   std::vector<Wall> walls_;
@@ -137,7 +148,8 @@ private:
   std::vector<Mobility> wall_mobility_;
   double friction_inverse_mass_ = 0.0;
   double closing_limit_ = 0.0;
-  bool touch_ahead_ = false; ///< the rows exceed the caches
+  std::vector<EnclosureMotion> motion_in_parts_; ///< by level, from 1
+  bool touch_ahead_ = false;                     ///< the rows exceed the caches
 
   // The state of the run.
   std::int64_t step_number_ = 0;
@@ -147,7 +159,11 @@ private:
   ListAge age_;
   SkinTuner tuner_;
   double skin_ = 0.0;
+  StepReview review_;
   EnclosureMotion motion_;
+  std::size_t level_ = 0;        ///< of the part that is being taken
+  std::int64_t part_number_ = 0; ///< of the step, in parts of its own length
+  std::int64_t kick_number_ = 0; ///< since the stepper was made: what springs tell the last step by
   EnclosureState enclosure_;
   Ledger ledger_; ///< from t = 0 to t_(n-1/2)
   Audit audit_;
@@ -160,6 +176,7 @@ private:
   Profile* profile_ = nullptr;
   std::vector<SegmentResult> results_;
   std::vector<std::string> warnings_;
+  bool audit_due_ = false; ///< not yet in this step
   bool warned_overlap_ = false, warned_closing_ = false;
 };
 

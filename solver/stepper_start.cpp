@@ -89,9 +89,10 @@ Stepper::Stepper(const Plan& plan, const Placement& start, kernels::InstructionS
 }
 
 Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa, int threads)
-    : plan_(plan), time_step_(plan.time_step), isa_(isa), team_(threads), walls_(make_walls(plan.scene.enclosure)),
-      size_(bounding_box(plan.scene.enclosure)), contacts_(make_contact_table(plan.scene)),
-      closing_limit_(closing_speed_limit(plan)), motion_(plan.scene, plan.time_step) {
+    : plan_(plan), time_step_(plan.time_step), part_(plan.time_step), isa_(isa), team_(threads),
+      walls_(make_walls(plan.scene.enclosure)), size_(bounding_box(plan.scene.enclosure)),
+      contacts_(make_contact_table(plan.scene)), closing_limit_(closing_speed_limit(plan)), review_(plan),
+      motion_(plan.scene, plan.time_step) {
   const Contact& contact = plan_.scene.contact;
   contact_effects_.damping = damping_of(contact);
   contact_effects_.friction = friction_of(contact);
@@ -112,6 +113,9 @@ Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa,
     // Many walls' contacts brake the same structure at once: each is allowed its share of that mass.
     friction_inverse_mass_ = enclosure_inverse_mass_ * most_wall_contacts(plan_);
   }
+  if (review_.on())
+    for (std::size_t level = 1; level < StepReview::parts.size(); ++level)
+      motion_in_parts_.emplace_back(plan_.scene, time_step_ / static_cast<double>(StepReview::parts[level]));
   choose_mobility();
   motion_effects_.integration = verlet ? kernels::Integration::verlet : kernels::Integration::leapfrog;
   motion_effects_.rubbing = contact_effects_.rotates()  ? kernels::Rubbing::with_rotation

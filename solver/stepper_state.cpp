@@ -98,7 +98,7 @@ void Stepper::save(RunState& s) const {
   s.spring_contacts.clear();
   s.springs.clear();
   if (remembers() && age_.built)
-    for (const LoadedSpring& spring : springs_.loaded(list_, granules_, step_number_ - 1, team_)) {
+    for (const LoadedSpring& spring : springs_.loaded(list_, granules_, kick_number_ - 1, team_)) {
       s.spring_contacts.insert(s.spring_contacts.end(), {spring.id, spring.partner});
       s.springs.insert(s.springs.end(), std::begin(spring.row.force), std::end(spring.row.force));
       s.springs.push_back(spring.row.root);
@@ -127,6 +127,11 @@ void Stepper::save(RunState& s) const {
   s.guards = guards_;
   s.warned_overlap = warned_overlap_;
   s.warned_closing = warned_closing_;
+  const StepReview::State& review = review_.state();
+  s.review_level = review.level;
+  s.review_speed = review.speed;
+  s.review_refined = review.refined;
+  s.review_finest = review.finest;
   s.audited = audit_.audited;
   s.missed = audit_.missed;
   s.missed_pair_steps = audit_.missed_pair_steps;
@@ -150,6 +155,7 @@ Stepper::Stepper(const Plan& plan, const RunState& s, kernels::InstructionSet is
   guards_ = s.guards;
   warned_overlap_ = s.warned_overlap;
   warned_closing_ = s.warned_closing;
+  review_.restore({s.review_level, s.review_speed, s.review_refined, s.review_finest});
   audit_.audited = s.audited;
   audit_.missed = s.missed;
   audit_.missed_pair_steps = s.missed_pair_steps;
@@ -194,7 +200,7 @@ void Stepper::restore_springs(const RunState& s) {
     std::copy_n(s.springs.begin() + static_cast<std::ptrdiff_t>(4 * k), 3, std::begin(springs[k].row.force));
     springs[k].row.root = s.springs[4 * k + 3];
   }
-  springs_.spread(springs, list_, granules_, step_number_ - 1, team_);
+  springs_.spread(springs, list_, granules_, kick_number_ - 1, team_);
 }
 
 void Stepper::restore_list(const RunState& s) {

@@ -54,12 +54,6 @@ void add_study(CLI::App& command, StudyArguments& study) {
   add_max_wall(command, study.max_wall);
 }
 
-void refuse(CLI::App& app, const std::string& command, const std::string& what) {
-  CLI::App* const refused = app.add_subcommand(command, what + " (not yet)");
-  refused->allow_extras();
-  refused->callback([command] { throw UsageError("`grandamp " + command + "`: not yet in this version"); });
-}
-
 void log_each(spdlog::level::level_enum level, const std::filesystem::path& scene,
               const std::vector<Problem>& problems) {
   for (const Problem& problem : problems) {
