@@ -1,6 +1,7 @@
 // Any bytes are either a scene, whose text as run gives the same scene again, or a SceneError that says why not.
 // Lines "#--set KEY=VALUE" of the input are overrides.
 #include "io/scene_file.hpp"
+#include "solver/several_modes.hpp"
 #include "tests/support/same_scene.hpp"
 
 #include <cmath>
@@ -46,7 +47,8 @@ void check_scene(const Scene& scene) {
   if (scene.structure) {
     const Vector3& n = scene.structure->direction;
     demand(std::abs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1.0) < 1e-12, "the direction is a unit vector");
-    demand(is_positive(scene.structure->mass), "the structure has a mass");
+    demand(scene.structure->modes.size > 0 || is_positive(scene.structure->mass), "the structure has a mass");
+    demand(faults_of(scene.structure->modes).empty() || scene.structure->modes.size == 0, "its matrices are sound");
   }
   if (scene.output.window)
     demand((*scene.output.window)[0] >= 0.0 && (*scene.output.window)[0] < (*scene.output.window)[1] &&
