@@ -12,6 +12,8 @@
 
 namespace grandamp {
 
+struct CaseProgress; // io/case_pool.hpp
+
 struct OptimiseOptions {
   std::string number;                 ///< of the summary, dotted: "structure.rms_displacement"
   bool maximise = false;              ///< instead of minimise
@@ -26,7 +28,7 @@ struct OptimiseOptions {
   bool force = false; ///< replace what the folder holds
   std::function<void(const std::string&)> tell;
   std::function<void(const std::string&)> warning;
-  std::function<void(const struct CaseProgress&)> progress;
+  std::function<void(const CaseProgress&)> progress;
   std::function<bool()> stop_requested;
 };
 

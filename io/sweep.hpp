@@ -12,6 +12,8 @@
 
 namespace grandamp {
 
+struct CaseProgress; // io/case_pool.hpp
+
 struct SweepOptions {
   std::vector<std::string> vary;      ///< KEY=START:STOP:COUNT[:log] or KEY=a,b,c
   std::vector<std::string> overrides; ///< KEY=VALUE that the document has already: only to refuse what is varied too
@@ -24,7 +26,7 @@ struct SweepOptions {
   bool force = false;                              ///< replace the sweep that the folder holds
   std::function<void(const std::string&)> tell;    ///< what will be run
   std::function<void(const std::string&)> warning; ///< a case that failed, as the sweep goes
-  std::function<void(const struct CaseProgress&)> progress;
+  std::function<void(const CaseProgress&)> progress;
   std::function<bool()> stop_requested;
 };
 

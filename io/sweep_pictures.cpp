@@ -98,7 +98,7 @@ bool any_unsteady(const SweepTable& table) {
 std::string heading(const SweepTable& table, const std::string& what) {
   std::string text = what;
   if (table.seeds > 1) text += fmt::format("; {} seeds, bars: standard error", table.seeds);
-  if (any_unsteady(table)) text += "; hollow: not steady";
+  if (any_unsteady(table)) text += "; hollow: not all runs steady";
   return text;
 }
 
