@@ -55,7 +55,7 @@ PlotSeries magnitudes(const FrequencyResponse& response, const char* label, cons
 }
 
 constexpr const char* measured_colour = "#1f4e79";
-constexpr const char* bare_colour = "#9e9e9e";
+constexpr const char* bare_colour = "#bdbdbd";
 constexpr const char* added_colour = "#b3541e";
 
 Plot panel(const char* quantity, bool logarithmic, bool from_zero) {
@@ -91,6 +91,7 @@ std::string response_svg(const FrequencyResponse& response, const std::string& t
   const auto host = [&](Plot& plot, const auto& part) {
     plot.series.push_back(
         closed_form(response, "bare, closed form", bare_colour, [&](double f) { return part(response.host.bare(f)); }));
+    plot.series.back().width = 4.0; // seen beneath a run without granules
     if (granules)
       plot.series.push_back(closed_form(response, "granules as added mass", added_colour,
                                         [&](double f) { return part(response.host.added_mass(f)); }));
