@@ -46,7 +46,7 @@ Rows examine(const ResponseHistory& history) {
 }
 
 /// What a record can tell of, Hz.
-double highest_frequency(const Rows& rows, const Drive& drive, std::vector<std::string>& notes) {
+double highest_frequency(const Rows& rows, const ExcitedBand& drive, std::vector<std::string>& notes) {
   const double limit = 1.0 / (rows_per_period * rows.widest);
   if (drive.low >= limit)
     throw UsageError(fmt::format("no frequency response: the force begins at {:g} Hz, and rows {:.3g} s apart tell of "
@@ -59,7 +59,7 @@ double highest_frequency(const Rows& rows, const Drive& drive, std::vector<std::
   return std::min(limit, drive.high);
 }
 
-double settling_time(const ResponseHistory& history, const Drive& drive, const LinearHost& host,
+double settling_time(const ResponseHistory& history, const ExcitedBand& drive, const LinearHost& host,
                      const ResponseSettings& settings, std::vector<std::string>& notes) {
   const double end = history.time.back();
   if (settings.settling) {
@@ -80,7 +80,8 @@ double settling_time(const ResponseHistory& history, const Drive& drive, const L
 
 class Estimate {
 public:
-  Estimate(const ResponseHistory& history, const Drive& drive, const LinearHost& host, const ResponseSettings& settings)
+  Estimate(const ResponseHistory& history, const ExcitedBand& drive, const LinearHost& host,
+           const ResponseSettings& settings)
       : history_(history), drive_(drive), host_(host), settings_(settings), rows_(examine(history)) {
     result_.method = drive.method;
     result_.host = host;
@@ -256,7 +257,7 @@ private:
   }
 
   const ResponseHistory& history_;
-  const Drive& drive_;
+  const ExcitedBand& drive_;
   const LinearHost& host_;
   const ResponseSettings& settings_;
   Rows rows_;
@@ -304,7 +305,7 @@ bool FrequencyResponse::even() const {
   return true;
 }
 
-FrequencyResponse estimate_response(const ResponseHistory& history, const Drive& drive, const LinearHost& host,
+FrequencyResponse estimate_response(const ResponseHistory& history, const ExcitedBand& drive, const LinearHost& host,
                                     const ResponseSettings& settings) {
   return Estimate(history, drive, host, settings).make();
 }

@@ -23,7 +23,7 @@ enum class ResponseMethod {
 const char* name(ResponseMethod method);
 
 /// What is known of the force beforehand.
-struct Drive {
+struct ExcitedBand {
   ResponseMethod method = ResponseMethod::welch;
   double low = 0.0;    ///< where it holds power, Hz
   double high = 0.0;   ///< Hz; infinite: as far as its spectrum shows power
@@ -66,7 +66,7 @@ struct FrequencyResponse {
 /// Left out, settling is until a thousandth of the structure's free vibration is left (nothing for a transient), and
 /// Welch's segments are long enough for a bias of 0.5 % at the peak, if eight of them go into the record.
 /// Throws UsageError where there is no response to be had, with the reason and what to change.
-FrequencyResponse estimate_response(const ResponseHistory& history, const Drive& drive, const LinearHost& host,
+FrequencyResponse estimate_response(const ResponseHistory& history, const ExcitedBand& drive, const LinearHost& host,
                                     const ResponseSettings& settings = {});
 
 } // namespace grandamp

@@ -140,6 +140,10 @@ void add_key_numbers(Page& page, const RunFacts& run) {
 void add_description(Page& page, const RunFacts& run) {
   const auto of = [&run](std::string_view path) { return number(run.summary, path); };
   page.section("run", "What was run");
+  if (!run.scene)
+    page.add(
+        "<p class=\"flag\">This version of grandamp does not read the scene, which is shown below as text alone: its "
+        "granules cannot be drawn, nor its numbers checked against it.</p>\n");
   Facts entries;
   if (run.scene) {
     const Scene& scene = *run.scene;

@@ -86,7 +86,8 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
   for (const std::vector<std::string>& row : rows) {
     html += "<tr>";
     for (std::size_t k = 0; k < row.size(); ++k)
-      html += (k == 0 ? "<th scope=\"row\">" : "<td>") + escaped(row[k]) + (k == 0 ? "</th>" : "</td>");
+      html += k == 0 ? "<th scope=\"row\">" + escaped(row[k]) + "</th>"
+                     : (row[k].size() > 60 ? "<td class=\"long\">" : "<td>") + escaped(row[k]) + "</td>";
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";

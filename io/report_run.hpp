@@ -15,6 +15,11 @@
 namespace grandamp::report {
 
 struct RunFacts {
+  RunFacts() = default;
+  RunFacts(const RunFacts&) = default; // not moved: what JSON's move may throw is nobody's to say
+  RunFacts& operator=(const RunFacts&) = default;
+  ~RunFacts() = default;
+
   std::filesystem::path folder;
   nlohmann::ordered_json summary; ///< null: the run has none; it still goes on, or was killed
   std::string scene_text;

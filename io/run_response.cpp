@@ -24,11 +24,11 @@ std::function<std::complex<double>(double)> oscillator(const Structure& structur
   };
 }
 
-Drive drive_of(const Scene& scene) {
+ExcitedBand drive_of(const Scene& scene) {
   if (!scene.structure)
     throw UsageError("no frequency response: the scene has no [structure] that could answer a force");
   const Excitation& e = scene.excitation;
-  Drive drive{ResponseMethod::transient, 0.0, std::numeric_limits<double>::infinity(), 0.0};
+  ExcitedBand drive{ResponseMethod::transient, 0.0, std::numeric_limits<double>::infinity(), 0.0};
   if (e.period) {
     drive.method = ResponseMethod::periodic;
     drive.period = *e.period;

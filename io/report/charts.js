@@ -69,7 +69,8 @@ grandamp.charts = (() => {
       title: { display: facts.name !== "", text: facts.name, color: ink }, grid: { color: grandamp.style("grid"), borderColor: grandamp.style("line") },
       ticks: { color: ink, maxRotation: 0, autoSkipPadding: 12, callback(value) {
         if (!facts.logarithmic) return short(value);
-        return [1, 2, 5].includes(Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9))) ? short(value) : "";
+        const leading = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
+        return [1, 2, 5].some(one => Math.abs(leading - one) < 1e-6) ? short(value) : "";
       } } };
   }
 
@@ -112,7 +113,7 @@ grandamp.charts = (() => {
         scales: { x: bars ? { grid: { display: false }, ticks: { color: grandamp.style("soft") }, title: { display: facts.x.name !== "", text: facts.x.name, color: grandamp.style("soft") } } : Object.assign(axis(facts.x, 0), reach(facts, "x")),
           y: Object.assign(axis(facts.y, "5%"), reach(facts, "y")) },
         plugins: { band: facts.band ? { from: facts.band[0], to: facts.band[1] } : {},
-          legend: { display: named, labels: { color: grandamp.style("ink"), usePointStyle: true, boxHeight: 7, filter: item => item.text !== "" } },
+          legend: { display: named, labels: { color: grandamp.style("ink"), usePointStyle: true, boxHeight: 7, filter: item => item.text !== "", sort: (a, b) => a.datasetIndex - b.datasetIndex } },
           tooltip: { callbacks: { title: () => "", label: tip } } } } };
   }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double low = 10.0, high = 22.0;
 const LinearOscillator oscillator; // 1 % of critical damping at 15.9 Hz
 
-std::string refusal(const ResponseHistory& history, const Drive& drive, const ResponseSettings& settings = {}) {
+std::string refusal(const ResponseHistory& history, const ExcitedBand& drive, const ResponseSettings& settings = {}) {
   try {
     estimate_response(history, drive, oscillator.host(), settings);
   } catch (const UsageError& error) {
@@ -56,7 +56,7 @@ TEST_CASE("one mode is fitted exactly through its own response, at any damping")
 }
 
 TEST_CASE("whole periods of a periodic random force leak nothing") {
-  const Drive drive{ResponseMethod::periodic, low, high, 8.0};
+  const ExcitedBand drive{ResponseMethod::periodic, low, high, 8.0};
   const auto rows = oscillator.record(even_times(32.0, 5e-4), periodic_force(low, high, 8.0, 1));
   const FrequencyResponse found = estimate_response(rows, drive, oscillator.host());
   CHECK(found.spectra.segments == 3);
@@ -74,7 +74,7 @@ TEST_CASE("whole periods of a periodic random force leak nothing") {
 }
 
 TEST_CASE("sweeps that follow each other are a periodic force") {
-  const Drive drive{ResponseMethod::periodic, low, high, 10.0};
+  const ExcitedBand drive{ResponseMethod::periodic, low, high, 10.0};
   const auto rows = oscillator.record(even_times(40.0, 5e-4), chirp_force(low, high, 10.0));
   const FrequencyResponse found = estimate_response(rows, drive, oscillator.host());
   CHECK(found.spectra.segments == 3);
@@ -83,7 +83,7 @@ TEST_CASE("sweeps that follow each other are a periodic force") {
 }
 
 TEST_CASE("one sweep from rest is read without a window at its start, and without a coherence") {
-  const Drive drive{ResponseMethod::transient, low, high, 0.0};
+  const ExcitedBand drive{ResponseMethod::transient, low, high, 0.0};
   const auto rows = oscillator.record(even_times(40.0, 5e-4), chirp_force(low, high, 40.0));
   const FrequencyResponse found = estimate_response(rows, drive, oscillator.host());
   CHECK(!found.has_coherence());
@@ -97,7 +97,7 @@ TEST_CASE("one sweep from rest is read without a window at its start, and withou
 
 TEST_CASE("a blow is read as far as its force has power") {
   const auto blow = [](double t) { return t < 0.02 ? std::sin(std::numbers::pi * t / 0.02) : 0.0; };
-  const Drive drive{ResponseMethod::transient, 0.0, std::numeric_limits<double>::infinity(), 0.0};
+  const ExcitedBand drive{ResponseMethod::transient, 0.0, std::numeric_limits<double>::infinity(), 0.0};
   const FrequencyResponse found =
       estimate_response(oscillator.record(even_times(12.0, 5e-4), blow), drive, oscillator.host());
   CHECK(found.spectra.frequency.front() < 0.1);
@@ -107,7 +107,7 @@ TEST_CASE("a blow is read as far as its force has power") {
 }
 
 TEST_CASE("Welch's segments of a random force are long enough for 1 % at the peak") {
-  const Drive drive{ResponseMethod::welch, low, high, 0.0};
+  const ExcitedBand drive{ResponseMethod::welch, low, high, 0.0};
   const auto rows = oscillator.record(even_times(600.0, 2e-3), white_force(5));
   const FrequencyResponse found = estimate_response(rows, drive, oscillator.host());
   CHECK(found.segment == doctest::Approx(std::sqrt(4.0 / 0.015) / oscillator.bandwidth()));
@@ -120,7 +120,7 @@ TEST_CASE("Welch's segments of a random force are long enough for 1 % at the pea
 }
 
 TEST_CASE("segments that are too short lower the peak as the bias says, and that is told") {
-  const Drive drive{ResponseMethod::welch, low, high, 0.0};
+  const ExcitedBand drive{ResponseMethod::welch, low, high, 0.0};
   const auto rows = oscillator.record(even_times(600.0, 2e-3), white_force(6));
   const FrequencyResponse found = estimate_response(rows, drive, oscillator.host(), {.segment = 16.0});
   const auto top = [&](std::size_t k) { return std::abs(found.response[k]) / std::abs(found.bare[k]) - 1.0; };
@@ -138,7 +138,7 @@ TEST_CASE("rows that are not quite even in time make no difference") {
   std::uniform_real_distribution<double> shift(-2e-4, 2e-4);
   std::vector<double> times = even_times(32.0, 1e-3);
   for (std::size_t n = 1; n + 1 < times.size(); ++n) times[n] += shift(engine);
-  const Drive drive{ResponseMethod::periodic, low, high, 8.0};
+  const ExcitedBand drive{ResponseMethod::periodic, low, high, 8.0};
   const auto rows = oscillator.record(times, periodic_force(low, high, 8.0, 1));
   CHECK(largest_error(estimate_response(rows, drive, oscillator.host()), oscillator) < 0.004);
 }
@@ -161,7 +161,7 @@ TEST_CASE("noise that the force does not explain lowers the coherence, not H1") 
 }
 
 TEST_CASE("records that tell nothing are refused with the reason") {
-  const Drive periodic{ResponseMethod::periodic, low, high, 8.0}, welch{ResponseMethod::welch, low, high, 0.0};
+  const ExcitedBand periodic{ResponseMethod::periodic, low, high, 8.0}, welch{ResponseMethod::welch, low, high, 0.0};
   const auto force = periodic_force(low, high, 8.0, 1);
   CHECK(has(refusal(oscillator.record(even_times(5.0, 1e-3), force), periodic), "shorter than one period"));
   CHECK(has(refusal(oscillator.record(even_times(0.01, 1e-3), force), welch), "11 rows"));
@@ -181,7 +181,7 @@ TEST_CASE("records that tell nothing are refused with the reason") {
 }
 
 TEST_CASE("what limits a response is told: settling, one period, rows per period, a tail") {
-  const auto notes = [](const ResponseHistory& history, const Drive& drive) {
+  const auto notes = [](const ResponseHistory& history, const ExcitedBand& drive) {
     std::string all;
     for (const std::string& note : estimate_response(history, drive, oscillator.host()).notes) all += note + "\n";
     return all;

@@ -1,5 +1,6 @@
 // `step = "adaptive"`: contacts faster than expected are followed, nothing else moves otherwise, and runs go on by the
 // same bits wherever they are cut.
+#include "solver/run_state.hpp"
 #include "solver/simulation.hpp"
 #include "tests/support/runs.hpp"
 #include "tests/support/scenes.hpp"
