@@ -38,7 +38,7 @@ struct Plot {
   std::vector<PlotSeries> series{};
   std::vector<std::string> categories{};       ///< bars instead: names along x, at x = 0, 1, ...
   std::optional<std::array<double, 2>> band{}; ///< of x, shaded
-  bool legend_left = false;                     ///< where the right is taken
+  bool legend_left = false;                    ///< where the right is taken
 
   /// A whole SVG document. Points that an axis cannot show (not finite, or not positive on a logarithmic one) are left
   /// out.
