@@ -33,7 +33,7 @@ RunOptions threads(int count) {
 } // namespace
 
 TEST_CASE("adaptive: a contact two hundred times faster than expected keeps its restitution") {
-  Scene scene = two_granules(1.5e-3, 2.5, 2.0e-5);
+  Scene scene = two_granules(1.5e-3, 2.5, 1.0e-4);
   scene.time.step.reset();
   scene.time.steps_per_contact = 8.0;
   scene.time.impact_speed = 0.02;
@@ -58,7 +58,7 @@ TEST_CASE("adaptive: a contact two hundred times faster than expected keeps its 
 
 TEST_CASE(
     "adaptive: a granule that meets nothing flies straight, and the structure moves as if whole steps were taken") {
-  for (const double guess : {0.15, 1.0e-4, 1.0e-7}) { // 3, 9 and 27 parts
+  for (const double guess : {0.1, 1.0e-4, 1.0e-7}) { // 3, 9 and 27 parts
     CAPTURE(guess);
     Scene scene = table_5(1, 0.02);
     scene.gravity = {};
@@ -74,12 +74,14 @@ TEST_CASE(
       const Sample now = run.sample();
       *displacement = now.displacement;
       *work = now.ledger.work_in;
-      CHECK(run.step_review().parts == (!adaptive ? 1 : guess > 0.1 ? 3 : guess > 1.0e-5 ? 9 : 27));
+      CHECK(run.step_review().parts == (!adaptive ? 1 : guess > 0.01 ? 3 : guess > 1.0e-5 ? 9 : 27));
+      // The structure's own solution is exact, the granule sees it by steps: its second derivative is at most 20 m/s^2.
+      const double allowed = 20.0 * run.plan().time_step * run.plan().time_step;
       Vector3 place = run.granules().position[0];
       place[2] += now.displacement;
       for (std::size_t k = 0; k < 3; ++k)
         CHECK(std::abs(place[k] - scene.populations[0].positions[0][k] -
-                       scene.populations[0].velocities[0][k] * run.time()) < 1.0e-14);
+                       scene.populations[0].velocities[0][k] * run.time()) < allowed);
     };
     double plain = 0.0, in_parts = 0.0, plain_work = 0.0, work_in_parts = 0.0;
     flown(false, &plain, &plain_work);
