@@ -243,8 +243,8 @@ private:
   std::string numbers_of(const Quantity& quantity, const ReadableUnit& unit) const {
     std::vector<std::string> header = keys_;
     header.push_back(fmt::format("{}, {}", quantity.title, unit.name));
-    header.push_back("standard error");
-    header.push_back("steady");
+    header.emplace_back("standard error");
+    header.emplace_back("steady");
     std::vector<std::vector<std::string>> rows;
     for (const Json& point : sweep_["points"]) {
       std::vector<std::string> row;
@@ -252,7 +252,7 @@ private:
       const double spread = error(point, quantity.name);
       row.push_back(fmt::format("{:.5g}", mean(point, quantity.name) * unit.factor));
       row.push_back(std::isfinite(spread) ? fmt::format("{:.2g}", spread * unit.factor) : "one seed");
-      row.push_back(is_steady(point) ? "yes" : "no");
+      row.emplace_back(is_steady(point) ? "yes" : "no");
       rows.push_back(std::move(row));
     }
     return table(header, rows);

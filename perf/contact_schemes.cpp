@@ -115,7 +115,7 @@ struct Damper {
     if (speed > 0.0 && law.friction > 0.0) {
       double share = 0.2;
       if (scheme == Scheme::shared)
-        share = 1.0 / (1 + std::max(one.contacts_before, other ? other->contacts_before : 0));
+        share = 1.0 / (1 + std::max({1, one.contacts_before, other ? other->contacts_before : 0}));
       const double bound = share * 2.0 / 7.0 * m * speed / step;
       friction = (-std::min(law.friction * std::abs(f), bound) / speed) * slip;
     }

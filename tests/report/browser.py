@@ -90,7 +90,7 @@ class Browser:
             raise RuntimeError(json.dumps(result["exceptionDetails"])[:800])
         return result["result"].get("value")
 
-    def await_true(self, script, seconds=20):
+    def await_true(self, script, seconds=60):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             if self.run(script):
