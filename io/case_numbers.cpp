@@ -15,7 +15,12 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 void collect(const Json& node, const std::string& path, CaseNumbers& numbers) {
   if (node.is_object()) {
-    for (const auto& [key, inner] : node.items()) collect(inner, path.empty() ? key : path + "." + key, numbers);
+    for (const auto& [key, inner] : node.items()) {
+      std::string inner_path = path;
+      if (!path.empty()) inner_path += '.';
+      inner_path += key;
+      collect(inner, inner_path, numbers);
+    }
   } else if (node.is_number()) {
     numbers.put(path, node.get<double>());
   } else if (node.is_boolean()) {

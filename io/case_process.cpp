@@ -40,6 +40,7 @@ CaseProcess::CaseProcess(const std::vector<std::string>& arguments, const std::f
   std::vector<std::string> texts{"grandamp"};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
+  pointers.reserve(texts.size() + 1);
   for (std::string& text : texts) pointers.push_back(text.data());
   pointers.push_back(nullptr);
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
