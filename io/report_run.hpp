@@ -15,8 +15,9 @@
 namespace grandamp::report {
 
 struct RunFacts {
-  RunFacts() = default;
-  RunFacts(const RunFacts&) = default; // not moved: what JSON's move may throw is nobody's to say
+  // JSON says that to make a null and to move throws nothing, and calls what may.
+  RunFacts() noexcept(false) = default;
+  RunFacts(const RunFacts&) = default; // not moved
   RunFacts& operator=(const RunFacts&) = default;
   ~RunFacts() = default;
 
