@@ -22,7 +22,7 @@ def sweep(at_a_time, duration):
 
 
 def main():
-    duration = 0.05 if quick else 0.5
+    duration = 0.05 if quick else 2.0
     taken = in_turn({n: lambda n=n: sweep(n, duration) for n in (1, 2)})
     one, two = median(taken[1]), median(taken[2])
     ratio = median([b / a for a, b in zip(taken[1], taken[2])])
