@@ -203,7 +203,6 @@ int command_line(int argc, char** argv) {
   CLI::App* const optimise_app = app.add_subcommand("optimise", "The design for which a number of the summary is best");
   add_optimise(*optimise_app, optimise);
 
-
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help, --version
