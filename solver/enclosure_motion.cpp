@@ -225,9 +225,33 @@ Vector3 EnclosureMotion::velocity_change(const EnclosureState& from, const Enclo
   return {change * direction_[0], change * direction_[1], change * direction_[2]};
 }
 
+namespace {
+
+/// Both halves of the interval about t_n, piece by piece; `look` sees the state between them.
+template <class Look>
+void through(const DrivenStructure& driven, DrivenStructure::State& now, std::int64_t step_number,
+             const Eigen::VectorXd& held, EnclosureStep& step, const Look& look) {
+  const std::int64_t pieces = driven.pieces_per_half(), middle = 2 * pieces * step_number;
+  const auto over = [&](std::int64_t first) {
+    for (std::int64_t piece = first; piece < first + pieces; ++piece) {
+      const DrivenWork done = driven.advance(now, piece, held);
+      step.work_in += done.work_in;
+      step.damping_loss += done.loss;
+    }
+  };
+  over(middle - pieces);
+  step.work_in_first_half = step.work_in;
+  step.damping_loss_first_half = step.damping_loss;
+  step.excitation = driven.excitation(middle);
+  step.stored = driven.stored(now, middle);
+  look();
+  over(middle);
+}
+
+} // namespace
+
 EnclosureStep EnclosureMotion::advance_modes(EnclosureState& state, std::int64_t step_number,
                                              const Vector3& wall_force) const {
-  const std::int64_t pieces = driven_->pieces_per_half(), middle = 2 * pieces * step_number;
   const auto size = static_cast<Eigen::Index>(state.modes.size());
   const Eigen::VectorXd held = Eigen::Vector3d(wall_force[0], wall_force[1], wall_force[2]);
   DrivenStructure::State now = Eigen::Map<const Eigen::VectorXd>(state.modes.data(), size);
@@ -236,22 +260,11 @@ EnclosureStep EnclosureMotion::advance_modes(EnclosureState& state, std::int64_t
   };
   EnclosureStep step;
   const Vector3 before = velocity_of(state);
-  const auto over = [&](std::int64_t first) {
-    for (std::int64_t piece = first; piece < first + pieces; ++piece) {
-      const DrivenWork done = driven_->advance(now, piece, held);
-      step.work_in += done.work_in;
-      step.damping_loss += done.loss;
-    }
-  };
-  over(middle - pieces);
-  step.work_in_first_half = step.work_in;
-  step.damping_loss_first_half = step.damping_loss;
-  step.place = at_enclosure(now.data());
-  step.displacement = along(step.place);
-  step.velocity = along(at_enclosure(now.data() + modes_->size));
-  step.excitation = driven_->excitation(middle);
-  step.stored = driven_->stored(now, middle);
-  over(middle);
+  through(*driven_, now, step_number, held, step, [&] {
+    step.place = at_enclosure(now.data());
+    step.displacement = along(step.place);
+    step.velocity = along(at_enclosure(now.data() + modes_->size));
+  });
   Eigen::Map<Eigen::VectorXd>(state.modes.data(), size) = now;
   const Vector3 after = velocity_of(state);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -366,26 +379,14 @@ EnclosureStep EnclosureMotion::advance_table(EnclosureState& state, std::int64_t
 }
 
 EnclosureStep EnclosureMotion::advance_driven(EnclosureState& state, std::int64_t step_number, double reaction) const {
-  const std::int64_t pieces = driven_->pieces_per_half(), middle = 2 * pieces * step_number;
   const Eigen::VectorXd held = Eigen::VectorXd::Constant(1, reaction);
   DrivenStructure::State now = Eigen::Vector2d(state.displacement, state.velocity);
   EnclosureStep step;
   step.velocity_before = state.velocity;
-  const auto over = [&](std::int64_t first) {
-    for (std::int64_t piece = first; piece < first + pieces; ++piece) {
-      const DrivenWork done = driven_->advance(now, piece, held);
-      step.work_in += done.work_in;
-      step.damping_loss += done.loss;
-    }
-  };
-  over(middle - pieces);
-  step.work_in_first_half = step.work_in;
-  step.damping_loss_first_half = step.damping_loss;
-  step.displacement = now(0);
-  step.velocity = now(1);
-  step.excitation = driven_->excitation(middle);
-  step.stored = driven_->stored(now, middle);
-  over(middle);
+  through(*driven_, now, step_number, held, step, [&] {
+    step.displacement = now(0);
+    step.velocity = now(1);
+  });
   state = {now(0), now(1), {}};
   step.velocity_after = state.velocity;
   return step;
