@@ -56,8 +56,6 @@ double solid_volume(const Population& population) {
 
 /// No arrangement of equal spheres is denser, and mixtures that are a damper's never come near.
 constexpr double densest_fill = 0.7405;
-/// Granules are numbered in 32 bits.
-constexpr double most_granules = 2147483647.0;
 
 void check_room(const Scene& scene, GranulesRead& granules) {
   const double width = least_width(scene.enclosure), volume = volume_of(scene.enclosure);
@@ -90,8 +88,8 @@ void check_room(const Scene& scene, GranulesRead& granules) {
         key,
         fmt::format("the granules' solid volume is {:.3g} times the enclosure's of {:.3g} m^3", solid / volume, volume),
         fmt::format("at most {} times: no packing is denser", densest_fill));
-  if (count > most_granules)
-    table.wrong(key, fmt::format("{:.0f} granules in all", count), fmt::format("at most {:.0f}", most_granules));
+  if (count > static_cast<double>(most_granules))
+    table.wrong(key, fmt::format("{:.0f} granules in all", count), fmt::format("at most {}", most_granules));
 }
 
 } // namespace

@@ -46,30 +46,34 @@ struct ContactResult {
   std::int64_t contacts = 0; ///< only with energies
 };
 
-/// Rows that the pairs after these will reach, asked of memory a few at a time between contacts: asked for all at once,
-/// the processor would wait for them.
-struct RowsAhead {
-  std::uint32_t next = 0;
+struct IndexRange {
+  std::uint32_t first = 0;
   std::uint32_t last = 0; ///< one past
 };
 
 struct PairArguments {
   GranuleArrays granules;
   const CandidatePair* pairs = nullptr;
-  std::size_t count = 0;             ///< a multiple of list_padding
-  CandidatePair* touching = nullptr; ///< scratch of pair_chunk + contact_padding entries
-  LawRow law{};                      ///< of all pairs (not with Variety::materials)
-  const LawRow* laws = nullptr;      ///< populations x populations (Variety::materials)
+  std::size_t count = 0;           ///< a multiple of list_padding
+  PairOffsets* touching = nullptr; ///< scratch of pair_chunk + contact_padding entries
+  LawRow law{};                    ///< of all pairs (not with Variety::materials)
+  const LawRow* laws = nullptr;    ///< populations x populations (Variety::materials)
   std::size_t populations = 1;
   double radius = 0.0;       ///< of every granule (Variety::alike), m
   double mass = 0.0;         ///< of every granule (Variety::alike), kg
   double friction_cap = 0.0; ///< (2/7, or 1 without rotation) / dt, 1/s; Verlet: half of it
   SpringArguments springs;   ///< rows of `pairs`
-  std::array<RowsAhead, 2> ahead{};
+  /// Rows that the pairs after these will reach, asked of memory a few at a time between contacts: asked for all at
+  /// once, the processor would wait for them.
+  std::array<IndexRange, 2> ahead{};
 };
 
 /// Candidates tested before their contacts are worked off.
 inline constexpr std::size_t pair_chunk = 512;
+
+/// Pairs of the list that are asked of memory before they are tested: each block of the list is a new beginning, which
+/// takes a processor that watches for streams some time to see.
+inline constexpr std::size_t list_ahead = 128;
 
 /// Contacts that are worked off together.
 inline constexpr std::size_t contact_batch = 64;
@@ -130,11 +134,6 @@ struct CandidateArguments {
   const double* z = nullptr;
   const double* radius = nullptr; ///< null if all are alike
   double reach = 0.0;             ///< skin; alike: both radii and the skin, m
-};
-
-struct IndexRange {
-  std::uint32_t first = 0;
-  std::uint32_t last = 0; ///< one past
 };
 
 /// Splits a list by the gap between two granules' surfaces.

@@ -65,9 +65,9 @@ template <class S> GRANDAMP_INLINE void select_slots(std::size_t first, unsigned
 }
 
 /// The share of a slip's momentum that friction may take at contacts of these rows.
-template <class S, class Index> GRANDAMP_INLINE typename S::Vector friction_shares(const ForceRow* force, Index index) {
+template <class S, class Row> GRANDAMP_INLINE typename S::Vector friction_shares(Row row) {
   typename S::Row rows[S::width];
-  for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(force[index(lane)].turn);
+  for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(row(lane).turn);
   typename S::Vector share, unused, neither, nor_this;
   S::columns(rows, unused, neither, nor_this, share);
   return share;
@@ -87,53 +87,84 @@ template <class S> GRANDAMP_INLINE double largest(typename S::Vector v, double s
   return so_far;
 }
 
-/// p_j - p_i of `width` pairs, and the sum of their radii.
-template <class S, bool alike>
-GRANDAMP_INLINE void difference(const PairArguments& a, const CandidatePair* pairs, typename S::Vector& x,
+/// p_j - p_i of `width` pairs, and the sum of their radii. `position(lane, second)`: a granule's.
+template <class S, bool alike, class Position>
+GRANDAMP_INLINE void difference(Position position, typename S::Vector twice, typename S::Vector& x,
                                 typename S::Vector& y, typename S::Vector& z, typename S::Vector& radii) {
   using Row = typename S::Row;
   const Row last_flipped = S::row_set(1.0, 1.0, 1.0, -1.0);
-  const PositionRow* position = a.granules.position;
   Row rows[S::width];
   for (int lane = 0; lane < S::width; ++lane) {
-    const Row i = S::row_load(&position[pairs[lane].first].x);
-    const Row j = S::row_load(&position[pairs[lane].second].x);
+    const Row i = S::row_load(&position(lane, false).x);
+    const Row j = S::row_load(&position(lane, true).x);
     if constexpr (alike)
       rows[lane] = j - i;
     else
       rows[lane] = S::row_fnma(last_flipped, i, j);
   }
   S::columns(rows, x, y, z, radii);
-  if constexpr (alike) radii = S::broadcast(2.0 * a.radius);
+  if constexpr (alike) radii = twice;
 }
 
-GRANDAMP_INLINE void ask_for_a_row(const GranuleArrays& granules, std::array<RowsAhead, 2>& ahead) {
-  for (RowsAhead& rows : ahead)
-    if (rows.next < rows.last) {
-      __builtin_prefetch(&granules.position[rows.next], 1);
-      __builtin_prefetch(&granules.motion[rows.next], 1);
-      __builtin_prefetch(&granules.force[rows.next], 1);
-      ++rows.next;
+/// Asks memory for rows, two at a time.
+template <class S> class RowsAhead {
+public:
+  explicit RowsAhead(const PairArguments& a)
+      : granules_(a.granules), next_(a.ahead[0].first), last_(a.ahead[0].last), then_(a.ahead[1]) {}
+
+  /// False when there are no more.
+  [[gnu::always_inline]] bool ask() {
+    if (next_ >= last_) {
+      if (then_.first >= then_.last) return false;
+      next_ = then_.first;
+      last_ = then_.last;
+      then_.last = 0;
     }
-}
+    __builtin_prefetch(granules_.position + next_, 1);
+    for (std::uint32_t row = next_; row < next_ + 2; ++row) {
+      __builtin_prefetch(granules_.motion + row, 1);
+      __builtin_prefetch(granules_.force + row, 1);
+    }
+    next_ += 2;
+    return true;
+  }
 
-/// Moves the pairs that touch to the scratch list; returns their number.
+private:
+  GranuleArrays granules_;
+  std::uint32_t next_, last_;
+  IndexRange then_;
+};
+
+/// Moves the pairs that touch to the scratch list; returns their number. `a` must be the caller's own copy: what is
+/// written here could otherwise be a part of it.
 template <class S, ContactEffects E>
 GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const CandidatePair* pairs, std::size_t count,
-                                     std::array<RowsAhead, 2>& ahead) {
+                                     RowsAhead<S>& ahead) {
   using Vector = typename S::Vector;
-  std::size_t n = 0;
-  for (std::size_t k = 0; k < count; k += S::width) {
-    Vector x, y, z, radii;
-    difference<S, E.variety == Variety::alike>(a, pairs + k, x, y, z, radii);
-    const Vector square = S::fma(z, z, S::fma(y, y, x * x));
-    const unsigned mask = S::less(square, radii * radii);
-    if constexpr (E.remembers())
-      select_slots<S>(static_cast<std::size_t>(pairs - a.pairs) + k, mask, a.springs.slots + n);
-    n += S::select(pairs + k, mask, a.touching + n);
-    if (k % 8 == 0) ask_for_a_row(a.granules, ahead);
+  constexpr bool alike = E.variety == Variety::alike;
+  constexpr std::size_t at_once = list_padding;
+  const PositionRow* position = a.granules.position;
+  const Vector twice = S::broadcast(2.0 * a.radius);
+  PairOffsets* to = a.touching;
+  for (std::size_t k = 0; k < count; k += at_once) {
+    for (std::size_t part = k; part < k + at_once; part += S::width) {
+      const CandidatePair* here = pairs + part;
+      Vector x, y, z, radii;
+      difference<S, alike>(
+          [&](int lane, bool second) __attribute__((always_inline))->const PositionRow& {
+            return position[second ? here[lane].second : here[lane].first];
+          },
+          twice, x, y, z, radii);
+      const Vector square = S::fma(z, z, S::fma(y, y, x * x));
+      const unsigned mask = S::less(square, radii * radii);
+      if constexpr (E.remembers())
+        select_slots<S>(static_cast<std::size_t>(here - a.pairs), mask, a.springs.slots + (to - a.touching));
+      to += S::select_offsets(here, mask, to);
+    }
+    ahead.ask();
+    __builtin_prefetch(pairs + k + list_ahead);
   }
-  return n;
+  return static_cast<std::size_t>(to - a.touching);
 }
 
 template <class S, ContactEffects E> struct PairLoop {
@@ -147,8 +178,17 @@ template <class S, ContactEffects E> struct PairLoop {
   Vector max_overlap;
   Vector max_closing = S::broadcast(0.0);
 
+  std::size_t population(std::uint32_t offset) const { return a.granules.population[offset >> offset_bits]; }
+  auto positions(const PairOffsets* pairs) const {
+    return [ position = static_cast<const PositionRow*>(a.granules.position), pairs ](int lane, bool second)
+        __attribute__((always_inline))
+            ->const PositionRow& {
+      return row_at(position, second ? pairs[lane].second : pairs[lane].first);
+    };
+  }
+
   /// From i to j, the distance, the sum of the radii, and by how much they exceed it.
-  void approach(const CandidatePair* pairs, Vector& x, Vector& y, Vector& z, Vector& distance, Vector& radii,
+  void approach(const PairOffsets* pairs, Vector& x, Vector& y, Vector& z, Vector& distance, Vector& radii,
                 Vector& overlap) const {
     if constexpr (E.precision == Precision::mixed) {
       // An overlap is the small difference of two lengths: float could not tell it. (radii^2 - distance^2) is taken in
@@ -156,7 +196,8 @@ template <class S, ContactEffects E> struct PairLoop {
       using D = typename S::Double;
       typename D::Vector px[2], py[2], pz[2], sum[2], square[2], gap[2];
       for (int half = 0; half < 2; ++half) {
-        difference<D, alike>(a, pairs + half * D::width, px[half], py[half], pz[half], sum[half]);
+        difference<D, alike>(positions(pairs + half * D::width), D::broadcast(2.0 * a.radius), px[half], py[half],
+                             pz[half], sum[half]);
         square[half] = D::fma(pz[half], pz[half], D::fma(py[half], py[half], px[half] * px[half]));
         gap[half] = sum[half] * sum[half] - square[half];
       }
@@ -167,13 +208,13 @@ template <class S, ContactEffects E> struct PairLoop {
       distance = S::sqrt(S::narrow(square));
       overlap = S::max(S::narrow(gap) / (radii + distance), S::broadcast(0.0));
     } else {
-      difference<S, alike>(a, pairs, x, y, z, radii);
+      difference<S, alike>(positions(pairs), S::broadcast(2.0 * a.radius), x, y, z, radii);
       distance = S::sqrt(S::fma(z, z, S::fma(y, y, x * x)));
       overlap = S::max(radii - distance, S::broadcast(0.0));
     }
   }
 
-  void geometry(const CandidatePair* pairs, unsigned lanes, ContactGeometry<S>& c) {
+  void geometry(const PairOffsets* pairs, unsigned lanes, ContactGeometry<S>& c) {
     Vector x, y, z, distance, radii;
     approach(pairs, x, y, z, distance, radii, c.overlap);
 
@@ -181,8 +222,8 @@ template <class S, ContactEffects E> struct PairLoop {
     Row rows[width];
     Vector inverse_mass, inverse_radius;
     for (int lane = 0; lane < width; ++lane) {
-      const Row i = S::row_load(motion[pairs[lane].first].velocity);
-      const Row j = S::row_load(motion[pairs[lane].second].velocity);
+      const Row i = S::row_load(row_at(motion, pairs[lane].first).velocity);
+      const Row j = S::row_load(row_at(motion, pairs[lane].second).velocity);
       if constexpr (alike)
         rows[lane] = i - j;
       else
@@ -191,15 +232,13 @@ template <class S, ContactEffects E> struct PairLoop {
     S::columns(rows, c.vx, c.vy, c.vz, inverse_mass);
     if constexpr (E.rotates() || !alike) {
       for (int lane = 0; lane < width; ++lane)
-        rows[lane] =
-            S::row_load(motion[pairs[lane].first].surface_spin) + S::row_load(motion[pairs[lane].second].surface_spin);
+        rows[lane] = S::row_load(row_at(motion, pairs[lane].first).surface_spin) +
+                     S::row_load(row_at(motion, pairs[lane].second).surface_spin);
       S::columns(rows, c.sx, c.sy, c.sz, inverse_radius);
     }
     Vector inverse; // of the distance
     if constexpr (alike) {
       inverse = S::broadcast(1.0) / distance;
-      c.radius = S::broadcast(0.5 * a.radius);
-      c.mass = S::broadcast(0.5 * a.mass);
       c.lever = distance * S::broadcast(0.5 / a.radius);
       max_overlap = S::max(max_overlap, c.overlap * S::broadcast(1.0 / a.radius));
     } else {
@@ -212,20 +251,25 @@ template <class S, ContactEffects E> struct PairLoop {
       c.radius = of_inverses * inverse_mass;
       c.mass = of_inverses * inverse_radius;
       // The larger inverse radius is at most the sum: the exact ratio is worked out only where it could be a record.
-      if (S::less(max_overlap, c.overlap * inverse_radius)) deepest(pairs, lanes, c.overlap);
+      if (S::less(max_overlap, c.overlap * inverse_radius))
+        max_overlap = deepest(a.granules.position, pairs, lanes, c.overlap, max_overlap);
     }
     c.nx = x * inverse;
     c.ny = y * inverse;
     c.nz = z * inverse;
-    c.friction_mass = c.mass;
+    if constexpr (!alike) c.friction_mass = c.mass;
   }
 
-  void forces(const CandidatePair* pairs, unsigned lanes, const ContactGeometry<S>& c, ContactForces<S>& f,
+  void forces(const PairOffsets* pairs, unsigned lanes, ContactGeometry<S> c, ContactForces<S>& f,
               ContactResult& result) {
+    if constexpr (alike) { // what is the same for all need not be kept
+      c.radius = S::broadcast(0.5 * a.radius);
+      c.mass = c.friction_mass = S::broadcast(0.5 * a.mass);
+    }
     LawVectors<S> law;
     if constexpr (E.variety == Variety::materials)
       law = gathered_laws<S>(a.laws, [&](int lane) {
-        return a.granules.population[pairs[lane].first] * a.populations + a.granules.population[pairs[lane].second];
+        return population(pairs[lane].first) * a.populations + population(pairs[lane].second);
       });
     else
       law = common_law<S>(a.law);
@@ -238,8 +282,9 @@ template <class S, ContactEffects E> struct PairLoop {
       if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
     } else if constexpr (E.counts()) {
       const ForceRow* force = a.granules.force;
-      const Vector share = S::min(friction_shares<S>(force, [&](int lane) { return pairs[lane].first; }),
-                                  friction_shares<S>(force, [&](int lane) { return pairs[lane].second; }));
+      const Vector share =
+          S::min(friction_shares<S>([&](int lane) -> const ForceRow& { return row_at(force, pairs[lane].first); }),
+                 friction_shares<S>([&](int lane) -> const ForceRow& { return row_at(force, pairs[lane].second); }));
       contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
@@ -250,13 +295,13 @@ template <class S, ContactEffects E> struct PairLoop {
     }
   }
 
-  ContactMemory<S> recall(const CandidatePair* pairs, const std::uint32_t* slots) const {
+  ContactMemory<S> recall(const PairOffsets* pairs, const std::uint32_t* slots) const {
     ContactMemory<S> memory;
     memory.spring = remembered<S>(a.springs, slots);
     memory.time_step = S::broadcast(a.springs.time_step);
     if constexpr (E.variety == Variety::materials)
       memory.law = gathered_laws<S>(a.springs.laws, [&](int lane) {
-        return a.granules.population[pairs[lane].first] * a.populations + a.granules.population[pairs[lane].second];
+        return population(pairs[lane].first) * a.populations + population(pairs[lane].second);
       });
     else
       memory.law = common_law<S>(a.springs.law);
@@ -265,7 +310,7 @@ template <class S, ContactEffects E> struct PairLoop {
     if (memory.moved_otherwise) {
       Row rows[width], spins[width];
       for (int lane = 0; lane < width; ++lane) {
-        const MotionRow &i = motion[pairs[lane].first], &j = motion[pairs[lane].second];
+        const MotionRow &i = row_at(motion, pairs[lane].first), &j = row_at(motion, pairs[lane].second);
         rows[lane] = S::row_load(i.velocity) - S::row_load(j.velocity);
         spins[lane] = S::row_load(i.surface_spin) + S::row_load(j.surface_spin);
       }
@@ -276,15 +321,18 @@ template <class S, ContactEffects E> struct PairLoop {
     return memory;
   }
 
-  void add_rows(const CandidatePair* pairs, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
+  void add_rows(const PairOffsets* pairs, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
     const Vector zero = S::broadcast(0.0);
     Row forces[width], turns[width];
     S::rows(f.fx, f.fy, f.fz, E.counts() ? S::broadcast(1.0) : zero, forces);
     if constexpr (E.rotates()) S::rows(f.tx, f.ty, f.tz, zero, turns);
     ForceRow* force = a.granules.force;
-    for (unsigned lane = 0; lane < lanes; ++lane) {
-      ForceRow& i = force[pairs[lane].first];
-      ForceRow& j = force[pairs[lane].second];
+    // With places known in advance the rows stay in registers.
+#pragma GCC unroll 16
+    for (unsigned lane = 0; lane < width; ++lane) {
+      if (lane >= lanes) break;
+      ForceRow& i = row_at(force, pairs[lane].first);
+      ForceRow& j = row_at(force, pairs[lane].second);
       S::row_store(i.force, S::row_load(i.force) + forces[lane]);
       if constexpr (E.counts()) // both count it
         S::row_store(j.force, S::row_fnma(last_flipped, forces[lane], S::row_load(j.force)));
@@ -299,8 +347,8 @@ template <class S, ContactEffects E> struct PairLoop {
       Row damping[width];
       S::rows((zero - f.damping) * c.nx, (zero - f.damping) * c.ny, (zero - f.damping) * c.nz, zero, damping);
       for (unsigned lane = 0; lane < lanes; ++lane) {
-        double* i = a.granules.damping_granule[pairs[lane].first].force;
-        double* j = a.granules.damping_granule[pairs[lane].second].force;
+        double* i = row_at(a.granules.damping_granule, pairs[lane].first).force;
+        double* j = row_at(a.granules.damping_granule, pairs[lane].second).force;
         S::row_store(i, S::row_load(i) + damping[lane]);
         S::row_store(j, S::row_load(j) - damping[lane]);
       }
@@ -309,8 +357,8 @@ template <class S, ContactEffects E> struct PairLoop {
       Row rubbing[width];
       S::rows(f.rx, f.ry, f.rz, zero, rubbing);
       for (unsigned lane = 0; lane < lanes; ++lane) {
-        ForceRow& i = a.granules.friction_granule[pairs[lane].first];
-        ForceRow& j = a.granules.friction_granule[pairs[lane].second];
+        ForceRow& i = row_at(a.granules.friction_granule, pairs[lane].first);
+        ForceRow& j = row_at(a.granules.friction_granule, pairs[lane].second);
         S::row_store(i.force, S::row_load(i.force) + rubbing[lane]);
         S::row_store(j.force, S::row_load(j.force) - rubbing[lane]);
         if constexpr (E.rotates()) {
@@ -321,24 +369,26 @@ template <class S, ContactEffects E> struct PairLoop {
     }
   }
 
-  [[gnu::noinline]] void deepest(const CandidatePair* pairs, unsigned lanes, Vector overlap) {
+  [[gnu::noinline]] static Vector deepest(const PositionRow* position, const PairOffsets* pairs, unsigned lanes,
+                                          Vector overlap, Vector so_far) {
     double overlaps[width];
     S::store(overlaps, overlap);
-    double record = largest<S>(max_overlap, 0.0);
+    double record = largest<S>(so_far, 0.0);
     for (unsigned lane = 0; lane < lanes; ++lane) {
-      const double i = a.granules.position[pairs[lane].first].radius;
-      const double j = a.granules.position[pairs[lane].second].radius;
+      const double i = row_at(position, pairs[lane].first).radius;
+      const double j = row_at(position, pairs[lane].second).radius;
       const double ratio = overlaps[lane] / (i < j ? i : j);
       record = ratio > record ? ratio : record;
     }
-    max_overlap = S::broadcast(record);
+    return S::broadcast(record);
   }
 };
 
 /// Adds the contact forces of the candidate pairs to the force rows (and the ledger's rows).
-template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, ContactResult& result) {
+template <class S, ContactEffects E> void pair_kernel(const PairArguments& arguments, ContactResult& result) {
+  const PairArguments a = arguments; // where no row that is stored can be a part of it
   PairLoop<S, E> loop{.a = a, .max_overlap = S::broadcast(result.max_overlap)};
-  std::array<RowsAhead, 2> ahead = a.ahead;
+  RowsAhead<typename S::Double> ahead(a);
   for (std::size_t begin = 0; begin < a.count; begin += pair_chunk) {
     const std::size_t left = a.count - begin;
     const std::size_t n =
@@ -359,17 +409,18 @@ template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, Co
           work(a.touching + first + k, static_cast<unsigned>(left_here - k < S::width ? left_here - k : S::width),
                k / S::width);
       };
-      each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v) __attribute__((always_inline)) {
+      each([&](const PairOffsets* pairs, unsigned lanes, std::size_t v) __attribute__((always_inline)) {
         loop.geometry(pairs, lanes, geometry[v]);
-        ask_for_a_row(a.granules, ahead);
+        ahead.ask();
       });
-      each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v)
+      each([&](const PairOffsets* pairs, unsigned lanes, std::size_t v)
                __attribute__((always_inline)) { loop.forces(pairs, lanes, geometry[v], forces[v], result); });
-      each([&](const CandidatePair* pairs, unsigned lanes, std::size_t v)
+      each([&](const PairOffsets* pairs, unsigned lanes, std::size_t v)
                __attribute__((always_inline)) { loop.add_rows(pairs, lanes, geometry[v], forces[v]); });
     }
   }
-  while (ahead[0].next < ahead[0].last || ahead[1].next < ahead[1].last) ask_for_a_row(a.granules, ahead);
+  while (ahead.ask()) {
+  }
   result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
   result.max_closing = largest<S>(loop.max_closing, result.max_closing);
 }

@@ -3,7 +3,9 @@
 // inverses of mass and radius ride along because a pair needs 1/m_i + 1/m_j and 1/r_i + 1/r_j.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace grandamp::kernels {
 
@@ -46,6 +48,23 @@ struct alignas(8) CandidatePair {
   std::uint32_t first;
   std::uint32_t second;
 };
+
+/// The places of a pair's rows in bytes from the first position; rows of 64 bytes stand twice as far from their first.
+/// So an address is one instruction's operand, wherever a contact needs its rows.
+struct alignas(8) PairOffsets {
+  std::uint32_t first;
+  std::uint32_t second;
+};
+inline constexpr int offset_bits = 5; ///< an index shifted by these
+static_assert(sizeof(PositionRow) == 1U << offset_bits);
+inline constexpr std::uint32_t most_rows = 1U << (32 - offset_bits);
+
+template <class Row> [[gnu::always_inline]] static inline Row& row_at(Row* rows, std::uint32_t offset) {
+  using Byte = std::conditional_t<std::is_const_v<Row>, const char, char>;
+  constexpr std::size_t scale = sizeof(Row) / sizeof(PositionRow);
+  static_assert(scale * sizeof(PositionRow) == sizeof(Row));
+  return *reinterpret_cast<Row*>(reinterpret_cast<Byte*>(rows) + offset * scale);
+}
 
 /// Granules per block: what is swept at a time, pairs first, then motion.
 inline constexpr std::uint32_t block_granules = 512;

@@ -63,9 +63,11 @@ struct Avx2 {
   }
 
   GRANDAMP_INLINE unsigned select(const CandidatePair* from, unsigned mask, CandidatePair* to) {
-    const __m256i pairs = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(avx2_select_table[mask]));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(pairs, order));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), together(from, mask));
+    return static_cast<unsigned>(__builtin_popcount(mask));
+  }
+  GRANDAMP_INLINE unsigned select_offsets(const CandidatePair* from, unsigned mask, PairOffsets* to) {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_slli_epi32(together(from, mask), offset_bits));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
   GRANDAMP_INLINE unsigned select(const std::uint32_t* from, unsigned mask, std::uint32_t* to) {
@@ -80,6 +82,13 @@ struct Avx2 {
     const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(avx2_select_table[mask]));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(partners, order));
     return static_cast<unsigned>(__builtin_popcount(mask));
+  }
+
+private:
+  GRANDAMP_INLINE __m256i together(const CandidatePair* from, unsigned mask) {
+    const __m256i pairs = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+    const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(avx2_select_table[mask]));
+    return _mm256_permutevar8x32_epi32(pairs, order);
   }
 };
 

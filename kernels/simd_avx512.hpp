@@ -74,6 +74,11 @@ struct Avx512 {
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), pairs));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
+  GRANDAMP_INLINE unsigned select_offsets(const CandidatePair* from, unsigned mask, PairOffsets* to) {
+    const __m512i pairs = _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), _mm512_loadu_si512(from));
+    _mm512_storeu_si512(to, _mm512_slli_epi32(pairs, offset_bits));
+    return static_cast<unsigned>(__builtin_popcount(mask));
+  }
   GRANDAMP_INLINE unsigned select(const std::uint32_t* from, unsigned mask, std::uint32_t* to) {
     const __m256i values = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),

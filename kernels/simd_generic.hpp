@@ -67,6 +67,14 @@ struct Generic {
     }
     return n;
   }
+  GRANDAMP_INLINE unsigned select_offsets(const CandidatePair* from, unsigned mask, PairOffsets* to) {
+    unsigned n = 0;
+    for (unsigned lane = 0; lane < 4; ++lane) {
+      to[n] = {from[lane].first << offset_bits, from[lane].second << offset_bits};
+      n += (mask >> lane) & 1U;
+    }
+    return n;
+  }
   GRANDAMP_INLINE unsigned select(const std::uint32_t* from, unsigned mask, std::uint32_t* to) {
     unsigned n = 0;
     for (unsigned lane = 0; lane < 4; ++lane) {

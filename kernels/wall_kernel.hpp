@@ -94,7 +94,8 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       remember<S>(a.springs, slots, lanes, memory.spring);
       if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
     } else if constexpr (E.counts()) {
-      const Vector share = friction_shares<S>(a.granules.force, [&](int lane) { return list[lane]; });
+      const Vector share =
+          friction_shares<S>([&](int lane) -> const ForceRow& { return a.granules.force[list[lane]]; });
       contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);

@@ -201,7 +201,8 @@ private:
   kernels::LawRow pair_law_{}, wall_law_{};
   double friction_cap_ = 0.0;
   std::vector<double> x_, y_, z_;
-  std::vector<kernels::CandidatePair> pairs_, touching_;
+  std::vector<kernels::CandidatePair> pairs_;
+  std::vector<kernels::PairOffsets> touching_;
   std::vector<std::uint32_t> near_, touching_wall_;
   std::size_t found_ = 0;
 };

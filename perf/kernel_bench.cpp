@@ -90,7 +90,7 @@ constexpr int bed_side = 13; // 2,197 granules: S1's number
 void pair_bench(benchmark::State& state, InstructionSet set, ContactEffects effects, bool touching) {
   Bed bed(bed_side, (touching ? 1.97 : 2.1) * radius, (touching ? 0.005 : 0.03) * radius, effects.ledger());
   const std::vector<kernels::CandidatePair> list = bed.pairs((touching ? 2.0 : 2.3) * radius);
-  std::vector<kernels::CandidatePair> scratch(kernels::pair_chunk + kernels::contact_padding);
+  std::vector<kernels::PairOffsets> scratch(kernels::pair_chunk + kernels::contact_padding);
   kernels::PairArguments a;
   a.granules = bed.granules.arrays();
   a.pairs = list.data();

@@ -113,10 +113,10 @@ ListState state_of(const VerletList& list, std::uint32_t ghost) {
     state.segment_blocks.push_back(static_cast<std::uint32_t>(segment.blocks.size()));
     state.pairs.reserve(state.pairs.size() + 2 * segment.candidates);
     for (const Block& block : segment.blocks) {
-      state.block_rows.insert(state.block_rows.end(), {block.first, block.last, block.front});
-      take_range(state, segment.inner, block.pairs, ghost);
+      state.block_rows.insert(state.block_rows.end(), {block.first, block.last});
+      take_range(state, segment.inner, block.inner, ghost);
+      take_range(state, segment.boundary, block.boundary, ghost);
     }
-    take_range(state, segment.boundary, segment.boundary_pairs, ghost);
     for (const WallList& wall : segment.walls) {
       state.wall_counts.push_back(static_cast<std::uint32_t>(wall.count));
       state.wall_rows.insert(state.wall_rows.end(), wall.granules.begin(),
@@ -139,13 +139,11 @@ void restore(VerletList& list, const ListState& state, std::uint32_t granules, s
       Block block;
       block.first = from.block_rows.next(block_row, block_row);
       block.last = block_row = from.block_rows.next(block.first, segment.last);
-      block.front = from.block_rows.next(0, granules);
-      block.pairs = put_range(from, segment, segment.inner, block.first, block.last, segment.last, granules);
+      block.inner = put_range(from, segment, segment.inner, block.first, block.last, segment.last, granules);
+      block.boundary = put_range(from, segment, segment.boundary, block.first, block.last, granules, granules);
       segment.blocks.push_back(block);
     }
     if (block_row != segment.last) from.block_rows.fail("leaves rows of a segment out");
-    segment.boundary_pairs =
-        put_range(from, segment, segment.boundary, segment.first, segment.last, granules, granules);
     put_walls(from, segment, walls, granules);
     segment.touching.resize(kernels::pair_chunk + kernels::contact_padding);
   }

@@ -24,7 +24,7 @@ public:
 struct ListState {
   std::vector<std::uint32_t> segment_rows;   ///< first and one past the last row, by segment
   std::vector<std::uint32_t> segment_blocks; ///< number of blocks, by segment
-  std::vector<std::uint32_t> block_rows;     ///< first, one past the last, one past the last that its pairs reach
+  std::vector<std::uint32_t> block_rows;     ///< first, one past the last
   std::vector<std::uint32_t> class_pairs;    ///< number of pairs, by range and class of gaps
   std::vector<std::uint32_t> pairs;          ///< two rows each
   std::vector<std::uint32_t> wall_counts;    ///< by segment and wall
@@ -152,9 +152,8 @@ template <class State, class Field> void visit_fields(State& s, Field&& field) {
 
   field(FieldInfo{"list/segment_rows", "1", "first row and one past the last", 2}, s.list.segment_rows);
   field(FieldInfo{"list/segment_blocks", "1", "blocks of each segment"}, s.list.segment_blocks);
-  field(FieldInfo{"list/block_rows", "1", "first row, one past the last, one past the last that its pairs reach", 3},
-        s.list.block_rows);
-  field(FieldInfo{"list/class_pairs", "1", "pairs by class of gaps: of each block, then of the segment's boundary"},
+  field(FieldInfo{"list/block_rows", "1", "first row, one past the last", 2}, s.list.block_rows);
+  field(FieldInfo{"list/class_pairs", "1", "pairs by class of gaps: of each block, in its segment, then into the next"},
         s.list.class_pairs);
   field(FieldInfo{"list/pairs", "1", "two rows each", 2}, s.list.pairs);
   field(FieldInfo{"list/wall_counts", "1", "rows near each wall, by segment"}, s.list.wall_counts);

@@ -13,6 +13,9 @@ namespace grandamp {
 
 using Vector3 = std::array<double, 3>;
 
+/// In all: their rows are told by 32 bits (kernels/rows.hpp).
+inline constexpr std::size_t most_granules = (std::size_t{1} << 27) - 64;
+
 enum class EnclosureShape { box, cylinder };
 
 /// [enclosure]: the rigid container. Its corner (box), or the corner of the lower rim's bounding box, is the origin.

@@ -13,8 +13,6 @@ namespace grandamp {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Rows are counted in 32 bits.
-constexpr std::size_t most_granules = std::numeric_limits<std::int32_t>::max();
 /// Equal spheres fill at most 0.7405 of space; random ones 0.64.
 constexpr double densest_fraction = 0.7405;
 constexpr double random_fraction = 0.64;

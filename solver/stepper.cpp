@@ -228,12 +228,23 @@ void Stepper::boundary_forces(const Kernels& kernels) {
   const double approach = approach_share();
   team_.each(list_.segments().size(), [&](std::size_t s) {
     Segment& segment = list_.segments()[s];
-    if (segment.boundary.count() == 0) return;
     kernels::PairArguments a = pair_arguments(segment);
-    a.pairs = segment.boundary.data();
-    a.count = segment.boundary_pairs.to_test(approach);
-    if (remembers()) a.springs = spring_arguments(s, springs_.of(s).boundary, 0, pair_spring_laws_);
-    timed(profile_, Phase::pairs, s, [&] { kernels.pair(a, results_[s].pairs); });
+    timed(profile_, Phase::pairs, s, [&] {
+      for (std::size_t b = 0; b < segment.blocks.size(); ++b) {
+        const Block& block = segment.blocks[b];
+        a.pairs = segment.boundary.data() + block.boundary.first;
+        a.count = block.boundary.to_test(approach);
+        if (a.count == 0) continue;
+        a.ahead = {};
+        if (touch_ahead_ && b + 1 < segment.blocks.size()) {
+          const Block& next = segment.blocks[b + 1];
+          a.ahead = {{next.beyond, {next.first, next.last}}};
+        }
+        if (remembers())
+          a.springs = spring_arguments(s, springs_.of(s).boundary, block.boundary.first, pair_spring_laws_);
+        kernels.pair(a, results_[s].pairs);
+      }
+    });
   });
 }
 
@@ -255,12 +266,12 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
         // Partners in the layer ahead come in no order that a processor would guess, and where a layer is larger than
         // its second-level cache the next block's own rows have left it again.
         const Block& next = segment.blocks[b + 1];
-        pairs.ahead = {kernels::RowsAhead{touched, next.front}, kernels::RowsAhead{next.first, next.last}};
+        pairs.ahead = {{{touched, next.front}, {next.first, next.last}}};
         touched = std::max(touched, next.front);
       }
-      pairs.pairs = segment.inner.data() + block.pairs.first;
-      pairs.count = block.pairs.to_test(approach);
-      if (remembers()) pairs.springs = spring_arguments(s, springs_.of(s).inner, block.pairs.first, pair_spring_laws_);
+      pairs.pairs = segment.inner.data() + block.inner.first;
+      pairs.count = block.inner.to_test(approach);
+      if (remembers()) pairs.springs = spring_arguments(s, springs_.of(s).inner, block.inner.first, pair_spring_laws_);
       timed(profile_, Phase::pairs, s, [&] { kernels.pair(pairs, results_[s].pairs); });
       motion.first = block.first;
       motion.last = block.last;

@@ -12,7 +12,10 @@ using kernels::IndexRange;
 
 /// Below this many granules one segment is faster than any division of the work.
 constexpr std::uint32_t single_segment = 20000;
-constexpr std::uint32_t most_segments = 16;
+constexpr int most_segments = 16;
+/// The rows on both sides of a segment's end are read and written once more in a step, which costs the more the fewer
+/// layers a segment has.
+constexpr int least_layers = 8;
 
 /// Positions as four arrays, laid over the force rows (64 bytes a granule, of which 32 are needed).
 struct Coordinates {
@@ -119,8 +122,10 @@ std::size_t VerletList::candidates() const {
 
 void VerletList::cut_into_segments(std::uint32_t granules) {
   const int layers = grid_.shape().cells[2];
-  std::uint32_t wanted = granules < single_segment ? 1 : std::min(most_segments, granules / (single_segment / 2));
-  wanted = std::max(1U, std::min(wanted, static_cast<std::uint32_t>(layers / 2)));
+  // A power of two: as many for each of two, four or eight threads.
+  std::uint32_t wanted = 1;
+  if (granules >= single_segment)
+    for (int segments = 2; segments <= std::min(most_segments, layers / least_layers); segments *= 2) wanted *= 2;
   segment_layers_.assign(1, 0);
   for (std::uint32_t s = 1; s < wanted; ++s) {
     const auto share = static_cast<std::uint32_t>(static_cast<std::uint64_t>(granules) * s / wanted);
@@ -145,17 +150,19 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
   segment.candidates = 0;
   Block block;
   block.first = segment.first;
-  std::size_t first_pair = 0;
-  std::uint32_t front = segment.first;
+  block.front = segment.first;
+  std::size_t first_inner = 0, first_boundary = 0;
 
-  const auto finish_block = [&](std::uint32_t last, std::uint32_t farthest) {
+  const auto finish_block = [&](std::uint32_t last) {
     block.last = last;
-    block.front = farthest;
-    segment.candidates += segment.inner.count() - first_pair;
-    block.pairs = classed(segment.inner, first_pair, search, granules, segment.touching);
-    first_pair = segment.inner.count();
+    segment.candidates += segment.inner.count() - first_inner + segment.boundary.count() - first_boundary;
+    block.inner = classed(segment.inner, first_inner, search, granules, segment.far_pairs);
+    block.boundary = classed(segment.boundary, first_boundary, search, granules, segment.far_pairs);
+    first_inner = segment.inner.count();
+    first_boundary = segment.boundary.count();
     segment.blocks.push_back(block);
     block.first = last;
+    block.beyond = {};
   };
   const auto append = [&](PairList& list, IndexRange own, std::uint32_t own_end, const IndexRange* ranges, int count) {
     std::size_t tests = (own_end > own.first ? own_end - own.first : 0) + kernels::list_padding;
@@ -170,7 +177,7 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
       for (int fast = 0; fast < shape.cells[0]; ++fast) {
         const IndexRange own{grid_.cell_start(fast, middle, slow), grid_.start()[grid_.index(fast, middle, slow) + 1]};
         if (own.first == own.last) continue;
-        if (own.first - block.first >= kernels::block_granules) finish_block(own.first, front);
+        if (own.first - block.first >= kernels::block_granules) finish_block(own.first);
         const int low = std::max(fast - 1, 0), high = std::min(fast + 1, shape.cells[0] - 1);
         const auto row_range = [&](int m, int s) {
           return IndexRange{grid_.cell_start(low, m, s), grid_.start()[grid_.index(high, m, s) + 1]};
@@ -187,17 +194,18 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
         if (slow + 1 < shape.cells[2])
           for (int m = std::max(middle - 1, 0); m <= std::min(middle + 1, shape.cells[1] - 1); ++m)
             ranges[static_cast<std::size_t>(count++)] = row_range(m, slow + 1);
-        if (next_is_outside)
+        const std::uint32_t reached = count == 0 ? own_end : ranges[static_cast<std::size_t>(count - 1)].last;
+        if (next_is_outside) {
           append(segment.boundary, own, 0, ranges.data(), count);
-        else
+          block.front = std::max(block.front, own_end);
+          if (count > 0) block.beyond = {block.beyond.last > 0 ? block.beyond.first : ranges[0].first, reached};
+        } else {
           append(segment.inner, own, own_end, ranges.data(), count);
-        front =
-            std::max(front, next_is_outside || count == 0 ? own_end : ranges[static_cast<std::size_t>(count - 1)].last);
+          block.front = std::max(block.front, reached);
+        }
       }
   }
-  finish_block(segment.last, segment.last);
-  segment.candidates += segment.boundary.count();
-  segment.boundary_pairs = classed(segment.boundary, 0, search, granules, segment.touching);
+  finish_block(segment.last);
 }
 
 void VerletList::build(Granules& granules, const Vector3& size, const std::vector<Wall>& walls, const Search& search,
@@ -257,11 +265,10 @@ void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall
       segment.inner.set_end(search.kernel(arguments, {i, i + 1}, segment.last, nullptr, 0, to));
     }
     segment.candidates += segment.inner.count() - first_pair;
-    block.pairs = classed(segment.inner, first_pair, search, granules, segment.touching);
+    block.inner = classed(segment.inner, first_pair, search, granules, segment.far_pairs);
     block.front = segment.last;
     segment.blocks.push_back(block);
   }
-  segment.boundary_pairs = {};
   list_walls(segment, granules, walls, search.skin);
   granules.clear_forces(0, granules.count());
 }

@@ -52,8 +52,10 @@ struct PairRange {
 
 struct Block {
   std::uint32_t first = 0, last = 0; ///< rows
-  PairRange pairs;                   ///< in the segment's inner list
-  std::uint32_t front = 0;           ///< one past the last row that its pairs reach
+  PairRange inner, boundary;         ///< in the segment's lists
+  /// What its pairs reach besides, to be asked of memory ahead: no part of a list's state, and none in one restored.
+  std::uint32_t front = 0;    ///< one past the last row in the segment
+  kernels::IndexRange beyond; ///< rows of the next segment
 };
 
 struct Segment {
@@ -61,11 +63,11 @@ struct Segment {
   std::vector<Block> blocks;
   PairList inner;
   PairList boundary; ///< pairs whose second granule is in the next segment
-  PairRange boundary_pairs;
   std::vector<WallList> walls;
-  std::vector<std::uint32_t> outside;           ///< granules whose centre is beyond a wall, or not finite
-  std::size_t candidates = 0;                   ///< without padding
-  std::vector<kernels::CandidatePair> touching; ///< scratch of the sweep
+  std::vector<std::uint32_t> outside;            ///< granules whose centre is beyond a wall, or not finite
+  std::size_t candidates = 0;                    ///< without padding
+  std::vector<kernels::PairOffsets> touching;    ///< scratch of the sweep
+  std::vector<kernels::CandidatePair> far_pairs; ///< scratch of the build
   std::vector<std::uint32_t> touching_wall;
 };
 

@@ -89,7 +89,7 @@ Checkpoint good_checkpoint(const Plan& plan) {
   s.surface_spin = {0.5, 0.4, 0.3, 0.2, 0.1, 0.0};
   s.list.segment_rows = {0, 2};
   s.list.segment_blocks = {1};
-  s.list.block_rows = {0, 2, 2};
+  s.list.block_rows = {0, 2};
   s.list.class_pairs.assign(2 * gap_classes, 0);
   s.list.class_pairs[0] = 1;
   s.list.pairs = {0, 1};

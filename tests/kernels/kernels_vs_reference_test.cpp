@@ -175,7 +175,7 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
         if (limit == 100000) REQUIRE(expected.contacts > 40);
 
         while (pairs.size() % list_padding) pairs.push_back({ghost, ghost + 1});
-        std::vector<CandidatePair> scratch(pair_chunk + contact_padding);
+        std::vector<PairOffsets> scratch(pair_chunk + contact_padding);
         PairArguments arguments;
         arguments.granules = bed.arrays();
         arguments.pairs = pairs.data();
@@ -230,7 +230,8 @@ TEST_CASE("mixed precision keeps overlaps that float coordinates could not tell"
         const auto contact = reference::pair_contact(bed.granules[0], bed.granules[1], bed.laws.front(), step);
         REQUIRE(contact.touching);
         const auto ghost = static_cast<std::uint32_t>(bed.count());
-        std::vector<CandidatePair> pairs(list_padding, {ghost, ghost + 1}), scratch(pair_chunk + contact_padding);
+        std::vector<CandidatePair> pairs(list_padding, {ghost, ghost + 1});
+        std::vector<PairOffsets> scratch(pair_chunk + contact_padding);
         pairs[3] = {0, 1};
         PairArguments arguments;
         arguments.granules = bed.arrays();
@@ -271,7 +272,8 @@ TEST_CASE("what a set of effects leaves out is not even read by its pair kernels
       CAPTURE(which);
       Bed bed = make_bed(effects, 7);
       const auto ghost = static_cast<std::uint32_t>(bed.count());
-      std::vector<CandidatePair> pairs, scratch(pair_chunk + contact_padding);
+      std::vector<CandidatePair> pairs;
+      std::vector<PairOffsets> scratch(pair_chunk + contact_padding);
       for (std::uint32_t i = 0; i < ghost; ++i)
         for (std::uint32_t j = i + 1; j < ghost; ++j) pairs.push_back({i, j});
       while (pairs.size() % list_padding) pairs.push_back({ghost, ghost + 1});
@@ -326,7 +328,7 @@ TEST_CASE("pair kernels: lists longer than a chunk, and larger figures from befo
       contacts += contact.touching;
       elastic += contact.elastic_energy;
     }
-    std::vector<CandidatePair> scratch(pair_chunk + contact_padding);
+    std::vector<PairOffsets> scratch(pair_chunk + contact_padding);
     PairArguments arguments;
     arguments.granules = bed.arrays();
     arguments.pairs = pairs.data();

@@ -10,8 +10,8 @@ PAIRS = 200  #: pairs of one run, each entering its contact at another phase of 
 STEPS_PER_CONTACT = (4, 8, 16, 32, 64)
 
 # Fig. 8
-GAS_SEEDS = seeds(10)
-GAS_MORE_SEEDS = seeds(40)  #: to tell a difference from chance
+GAS_SEEDS = seeds(40)  #: to tell a difference from chance
+GAS_STEPS = (8, 16, 64)  #: steps in a contact, the last for what the others converge to
 
 # Fig. 11
 FREE_SEEDS = seeds(4)
