@@ -23,11 +23,11 @@ Population balls(std::size_t count, double radius) {
   return population;
 }
 
-/// A cloud flying about in a box that a structure carries: enough for several segments.
-Scene cloud(std::size_t count, double side) {
+/// A cloud flying about in a box that a structure carries.
+Scene cloud(std::size_t count, const Vector3& size) {
   Scene scene;
   scene.gravity = {0.0, 0.0, -9.81};
-  scene.enclosure.size = {side, side, side};
+  scene.enclosure.size = size;
   scene.packing = PackingKind::random;
   scene.populations.push_back(balls(count, 1.0e-3));
   scene.contact.granule.stiffness = 1.0e7;
@@ -46,7 +46,12 @@ struct Outcome {
   Sample sample;
   std::int64_t builds = 0;
   int threads = 0;
+  std::size_t segments = 0;
 };
+
+/// So many layers of cells that 20,000 granules and more are cut into eight segments.
+constexpr Vector3 tall{0.05, 0.05, 0.15};
+constexpr Vector3 small{0.033, 0.033, 0.033};
 
 Outcome run(const Scene& scene, int threads, const std::string& isa) {
   RunOptions options;
@@ -54,7 +59,8 @@ Outcome run(const Scene& scene, int threads, const std::string& isa) {
   options.isa = isa;
   Simulation simulation(scene, options);
   while (!simulation.finished()) simulation.step();
-  return {simulation.granules(), simulation.sample(), simulation.verlet().builds, simulation.threads()};
+  return {simulation.granules(), simulation.sample(), simulation.verlet().builds, simulation.threads(),
+          simulation.state().list.segment_blocks.size()};
 }
 
 bool same_bits(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
@@ -76,10 +82,11 @@ void check_same(const Outcome& a, const Outcome& b) {
 } // namespace
 
 TEST_CASE("the same bits on 1, 2, 4 and 8 threads") {
-  const Scene scene = cloud(24000, 0.066);
+  const Scene scene = cloud(24000, tall);
   const Outcome alone = run(scene, 1, "");
   CHECK(alone.builds > 3);
   CHECK(alone.sample.contacts > 100);
+  CHECK(alone.segments == 8);
   for (const int threads : {2, 4, 8}) {
     CAPTURE(threads);
     const Outcome shared = run(scene, threads, "");
@@ -89,14 +96,14 @@ TEST_CASE("the same bits on 1, 2, 4 and 8 threads") {
 }
 
 TEST_CASE("the same bits on 1 and 2 threads with two sizes and the verlet integrator") {
-  Scene scene = cloud(16000, 0.066);
+  Scene scene = cloud(16000, tall);
   scene.populations.push_back(balls(6000, 0.8e-3));
   scene.time.integrator = Integrator::verlet;
   check_same(run(scene, 1, ""), run(scene, 2, ""));
 }
 
 TEST_CASE("mixed precision: the same bits on 1, 2 and 4 threads, and other bits than in double") {
-  Scene scene = cloud(24000, 0.066);
+  Scene scene = cloud(24000, tall);
   const Outcome full = run(scene, 2, "");
   scene.time.precision = Precision::mixed;
   const Outcome alone = run(scene, 1, "");
@@ -114,7 +121,7 @@ TEST_CASE("AVX2 and AVX-512 give the same bits") {
     return;
   }
   for (const Precision precision : {Precision::full, Precision::mixed}) {
-    Scene scene = cloud(3000, 0.033);
+    Scene scene = cloud(3000, small);
     scene.time.precision = precision;
     check_same(run(scene, 1, "avx2"), run(scene, 1, "avx512"));
     scene.populations.push_back(balls(500, 0.8e-3));
@@ -123,7 +130,7 @@ TEST_CASE("AVX2 and AVX-512 give the same bits") {
 }
 
 TEST_CASE("a few granules stay on one thread unless told otherwise") {
-  CHECK(run(cloud(500, 0.033), 0, "").threads == 1);
+  CHECK(run(cloud(500, small), 0, "").threads == 1);
 }
 
 } // namespace grandamp::test
