@@ -101,11 +101,11 @@ std::vector<std::string> KeptMass::following(const Kept& kept, const std::vector
   const double radius = kept.radius_key >= 0 ? given(kept.radius_key, "radius") : kept.radius;
   const double mass = kept.mass >= 0 ? given(kept.mass, "mass") : density * volume(radius);
   const double count = std::round(kept.total / mass);
-  if (!(count >= 1.0 && count < 2147483648.0))
+  if (!(count >= 1.0 && count <= static_cast<double>(most_granules)))
     throw UsageError(
         fmt::format("--keep total_mass: {} kg are {:.3g} granules of {:.3g} kg; allowed: granules of which the "
-                    "total mass has from 1 to 2147483647",
-                    kept.total, kept.total / mass, mass));
+                    "total mass has from 1 to {}",
+                    kept.total, kept.total / mass, mass, most_granules));
   return {set(kept.prefix + "count", count), share(count, radius)};
 }
 

@@ -166,7 +166,7 @@ private:
   }
 
   void read_count() {
-    const std::optional<std::int64_t> count = table_.integer("count", 0, 2147483647);
+    const std::optional<std::int64_t> count = table_.integer("count", 0, static_cast<std::int64_t>(most_granules));
     counted_ = count.has_value();
     population_.count = static_cast<std::size_t>(count.value_or(0));
   }
@@ -175,10 +175,10 @@ private:
     const std::optional<double> total = table_.number("total_mass", positive);
     if (!total || !(population_.mass > 0.0)) return;
     const double count = std::round(*total / population_.mass);
-    if (!(count >= 1.0 && count <= 2147483647.0))
+    if (!(count >= 1.0 && count <= static_cast<double>(most_granules)))
       return table_.wrong("total_mass",
                           fmt::format("that is {} granules of {} kg", *total / population_.mass, population_.mass),
-                          "from one granule to 2147483647");
+                          fmt::format("from one granule to {}", most_granules));
     counted_ = true;
     population_.count = static_cast<std::size_t>(count);
   }

@@ -21,8 +21,8 @@ std::string short_label(const StudyRow& row) {
   return row.setting->name;
 }
 
-PlotSeries own_mark(const StudyTable& table, double y) {
-  PlotSeries series{.name = "the scene's own settings", .colour = "#d32f2f"};
+PlotSeries own_mark(const StudyTable& table, double y, bool hollow = false) {
+  PlotSeries series{.name = "the scene's own settings", .colour = "#d32f2f", .hollow = hollow};
   if (table.own != nullptr) series.points.push_back({.x = table.own->time, .y = y});
   return series;
 }
@@ -50,6 +50,12 @@ Plot error_against_time(const StudyReport& report) {
   return plot;
 }
 
+/// Whether the row differs from the reference by more than chance.
+bool resolved(const StudyRow& row) {
+  return std::any_of(row.differences.begin(), row.differences.end(),
+                     [](const auto& one) { return is_main(one.observable) && one.resolved(); });
+}
+
 Plot response_against_time(const StudyReport& report) {
   Plot plot;
   plot.title = "Difference from the reference against time (hollow: not told from chance)";
@@ -60,9 +66,7 @@ Plot response_against_time(const StudyReport& report) {
     for (const StudyRow& row : report.table->rows) {
       if (row.setting->group != group || row.runs == 0 || row.setting->reference || row.error() == 0.0) continue;
       const double error = 100.0 * row.error(), bar = 100.0 * row.scatter();
-      const bool resolved = std::any_of(row.differences.begin(), row.differences.end(),
-                                        [](const auto& one) { return is_main(one.observable) && one.resolved(); });
-      (resolved ? told : hidden)
+      (resolved(row) ? told : hidden)
           .points.push_back({row.time, error, std::max(error - bar, 0.01), error + bar, short_label(row)});
     }
     if (!told.points.empty() || !hidden.points.empty()) {
@@ -71,7 +75,7 @@ Plot response_against_time(const StudyReport& report) {
     }
   }
   if (report.table->own != nullptr && !report.table->own->setting->reference)
-    plot.series.push_back(own_mark(*report.table, 100.0 * report.table->own->error()));
+    plot.series.push_back(own_mark(*report.table, 100.0 * report.table->own->error(), !resolved(*report.table->own)));
   return plot;
 }
 

@@ -201,13 +201,14 @@ private:
       const double x = x_.at(point.x), y = y_.at(point.y);
       if (point.high > point.low) line(x, y_.at(point.low), x, y_.at(point.high), series.colour.c_str(), 0.8);
       if (series.dots) mark(x, y, series);
-      if (!point.label.empty()) label(x + 6.0, y - 5.0, point.label);
+      if (!point.label.empty()) label(x, y - 5.0, point.label);
     }
   }
 
-  /// Left out where it would lie on another one.
-  void label(double x, double y, const std::string& text) {
+  /// Right of x, or left of it where the picture ends; left out where it would lie on another one.
+  void label(double at, double y, const std::string& text) {
     const double reach = 5.0 * static_cast<double>(text.size());
+    const double x = at + 6.0 + reach < width - right ? at + 6.0 : at - 6.0 - reach;
     for (const auto& [left_end, right_end, height_there] : labels_)
       if (x < right_end && left_end < x + reach && std::abs(y - height_there) < 9.0) return;
     labels_.push_back({x, x + reach, y});

@@ -1,5 +1,6 @@
 #include "solver/periodic_random_force.hpp"
 
+#include "solver/chebyshev.hpp"
 #include "solver/random_numbers.hpp"
 
 #include <algorithm>
@@ -72,13 +73,7 @@ double PeriodicRandomForce::at(Instant instant) const {
   const double number = std::clamp(std::floor(place), 0.0, static_cast<double>(cells_ - 1));
   const Cell& cell = cell_at(static_cast<std::int64_t>(number));
   const double x = 2.0 * (place - number) - 1.0;
-  double next = 0.0, after_next = 0.0; // Clenshaw
-  for (std::size_t k = nodes; k-- > 1;) {
-    const double here = 2.0 * x * next - after_next + cell.coefficient[k];
-    after_next = next;
-    next = here;
-  }
-  return x * next - after_next + cell.coefficient[0];
+  return chebyshev_sum(cell.coefficient, x);
 }
 
 } // namespace grandamp

@@ -1,5 +1,6 @@
 #include "solver/random_force.hpp"
 
+#include "solver/chebyshev.hpp"
 #include "solver/random_numbers.hpp"
 
 #include <algorithm>
@@ -93,13 +94,7 @@ double RandomForce::at(Instant instant) const {
   // From -1 to 1 over the cell; the product with its rounding error.
   const double within = std::fma(-number, cell_length_, instant.time) + instant.rest;
   const double x = 2.0 * within / cell_length_ - 1.0;
-  double next = 0.0, after_next = 0.0; // Clenshaw
-  for (std::size_t k = nodes; k-- > 1;) {
-    const double here = 2.0 * x * next - after_next + cell.coefficient[k];
-    after_next = next;
-    next = here;
-  }
-  return x * next - after_next + cell.coefficient[0];
+  return chebyshev_sum(cell.coefficient, x);
 }
 
 } // namespace grandamp

@@ -89,7 +89,7 @@ const std::vector<BadScene> bad_scenes{
      "gravity = [0, 0, 0]",
      {"bad.toml:13: packing.kind = 'settled'", "needs gravity", "kind = \"random\""}},
     // Granules.
-    {"count = 317", "count = -1", {"bad.toml:9: granules.0.count = -1: out of range", "from 0 to 2147483647"}},
+    {"count = 317", "count = -1", {"bad.toml:9: granules.0.count = -1: out of range", "from 0 to 134217664"}},
     {"count = 317", "count = 3.0", {"granules.0.count = 3.0: wrong type: a floating-point number"}},
     {"count = 317", "count = \"many\"", {"granules.0.count = 'many': wrong type: a string"}},
     {"count = 317", "count = 99999999999", {"granules.0.count = 99999999999: out of range"}},
