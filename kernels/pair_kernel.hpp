@@ -260,12 +260,29 @@ template <class S, ContactEffects E> struct PairLoop {
     if constexpr (!alike) c.friction_mass = c.mass;
   }
 
-  void forces(const PairOffsets* pairs, unsigned lanes, ContactGeometry<S> c, ContactForces<S>& f,
+  /// With what is the same for all contacts and is not kept with each. Member by member: as a whole it would be copied.
+  [[gnu::always_inline]] ContactGeometry<S> completed(const ContactGeometry<S>& kept) const {
+    ContactGeometry<S> c;
+    c.overlap = kept.overlap;
+    c.nx = kept.nx, c.ny = kept.ny, c.nz = kept.nz;
+    c.vx = kept.vx, c.vy = kept.vy, c.vz = kept.vz;
+    if constexpr (E.rotates()) c.sx = kept.sx, c.sy = kept.sy, c.sz = kept.sz;
+    c.lever = kept.lever;
+    c.radius = S::broadcast(0.5 * a.radius);
+    c.mass = c.friction_mass = S::broadcast(0.5 * a.mass);
+    return c;
+  }
+
+  void forces(const PairOffsets* pairs, unsigned lanes, const ContactGeometry<S>& kept, ContactForces<S>& f,
               ContactResult& result) {
-    if constexpr (alike) { // what is the same for all need not be kept
-      c.radius = S::broadcast(0.5 * a.radius);
-      c.mass = c.friction_mass = S::broadcast(0.5 * a.mass);
-    }
+    if constexpr (alike)
+      forces_of(pairs, lanes, completed(kept), f, result);
+    else
+      forces_of(pairs, lanes, kept, f, result);
+  }
+
+  [[gnu::always_inline]] void forces_of(const PairOffsets* pairs, unsigned lanes, const ContactGeometry<S>& c,
+                                        ContactForces<S>& f, ContactResult& result) {
     LawVectors<S> law;
     if constexpr (E.variety == Variety::materials)
       law = gathered_laws<S>(a.laws, [&](int lane) {

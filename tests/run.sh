@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what the tests need, builds, and runs every test; the last line is the sum: "N passed, N failed".
-#   bash tests/run.sh          some fifty minutes on two cores
+#   bash tests/run.sh          fifty to seventy minutes on two cores
 #   bash tests/run.sh --full   the long forms too, and every test under the sanitizers
 # What each check printed is in build/checks/.
 set -uo pipefail
@@ -14,7 +14,7 @@ case "${1-}" in
   *) echo "usage: bash tests/run.sh [--full]" >&2; exit 2 ;;
 esac
 [ $full -eq 1 ] && export GRANDAMP_FULL=1
-fuzz_seconds=60
+fuzz_seconds=30
 # Without --full: the folders whose tests reach every line; the long runs of the others only repeat them.
 sanitized='^(kernels|solver|io)/'
 # The long hard cases would take days: 10^9 granule-steps of them are run by themselves.

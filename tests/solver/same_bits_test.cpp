@@ -1,6 +1,7 @@
 // The same scene gives the same bits, however many threads share the work and whichever of the fused instruction sets
 // does it.
 #include "kernels/dispatch.hpp"
+#include "solver/run_state.hpp"
 #include "solver/simulation.hpp"
 
 #include <doctest/doctest.h>
