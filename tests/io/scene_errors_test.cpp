@@ -95,7 +95,7 @@ const std::vector<BadScene> bad_scenes{
     {"count = 317", "count = 99999999999", {"granules.0.count = 99999999999: out of range"}},
     {"count = 317",
      "count = 100000000",
-     {"bad.toml:9: granules.0.count = 1000000000", "solid volume", "at most 0.7405"}},
+     {"bad.toml:9: granules.0.count = 100000000", "solid volume", "at most 0.7405"}},
     {"count = 317",
      "count = 317\ntotal_mass = 0.01",
      {"bad.toml:10: granules.0.total_mass = 0.01: does not apply: count is given as well", "one of count, total_mass"}},
