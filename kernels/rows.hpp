@@ -61,8 +61,8 @@ inline constexpr std::uint32_t most_rows = 1U << (32 - offset_bits);
 
 template <class Row> [[gnu::always_inline]] static inline Row& row_at(Row* rows, std::uint32_t offset) {
   using Byte = std::conditional_t<std::is_const_v<Row>, const char, char>;
-  constexpr std::size_t scale = sizeof(Row) / sizeof(PositionRow);
-  static_assert(scale * sizeof(PositionRow) == sizeof(Row));
+  constexpr std::size_t scale = sizeof(Row) >> offset_bits;
+  static_assert(scale << offset_bits == sizeof(Row));
   return *reinterpret_cast<Row*>(reinterpret_cast<Byte*>(rows) + offset * scale);
 }
 

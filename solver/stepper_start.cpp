@@ -11,6 +11,8 @@
 
 namespace grandamp {
 
+static_assert(most_granules + 2 <= kernels::most_rows); // and the two ghosts
+
 using kernels::MotionRow;
 using kernels::Observation;
 using kernels::PositionRow;
