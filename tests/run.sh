@@ -14,7 +14,7 @@ case "${1-}" in
   *) echo "usage: bash tests/run.sh [--full]" >&2; exit 2 ;;
 esac
 [ $full -eq 1 ] && export GRANDAMP_FULL=1
-fuzz_seconds=30
+fuzz_seconds=60
 # Without --full: the folders whose tests reach every line; the long runs of the others only repeat them.
 sanitized='^(kernels|solver|io)/'
 # The long hard cases would take days: 10^9 granule-steps of them are run by themselves.

@@ -81,13 +81,9 @@ TEST_CASE("hard cases: jammed at 62 percent and shaken at 50 g") {
   for (const Choice& choice : pairwise_choices()) {
     const std::string settings = told(choice);
     CAPTURE(settings);
-    // Closed to 1 % over ten strokes; the short form is one, and all that happens in it is the first hits at once. Not
-    // at eight steps without friction, or with Verlet: the work of a contact's spring is a sum by the trapezoidal rule,
-    // off by a few percent of what its damping takes. Where friction takes most, that is little of the whole.
+    // Closed to 1 % over ten strokes; the short form is one, and all that happens in it is the first hits at once.
     Bounds bounds;
-    const bool coarse = choice.steps_per_contact < 16.0 &&
-                        (choice.friction == FrictionLaw::none || choice.integrator == Integrator::verlet);
-    if (!full_tests() || coarse) bounds.residual = residual_of_a_contact(choice);
+    if (!full_tests()) bounds.residual = residual_of_a_contact(choice);
     report.add(choice, watch(jammed_box(choice.seed, full_tests()), choice, options), bounds);
   }
 }
