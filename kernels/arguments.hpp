@@ -10,6 +10,14 @@
 
 namespace grandamp::kernels {
 
+/// Forces by kind, for the ledger.
+struct KindRows {
+  DampingRow* damping_granule = nullptr;
+  DampingRow* damping_wall = nullptr;
+  ForceRow* friction_granule = nullptr;
+  ForceRow* friction_wall = nullptr;
+};
+
 /// The arrays of a region's granules. `ghost` and ghost + 1 are two rows past the last granule, far from everything
 /// and from each other: lists are padded with them.
 struct GranuleArrays {
@@ -18,11 +26,10 @@ struct GranuleArrays {
   MotionRow* predicted = nullptr; ///< the velocities that forces see; the same array as motion under leapfrog
   ForceRow* force = nullptr;
   std::uint8_t* population = nullptr;
-  DampingRow* damping_granule = nullptr; ///< ledger only
-  DampingRow* damping_wall = nullptr;
-  ForceRow* friction_granule = nullptr;
-  ForceRow* friction_wall = nullptr;
-  std::uint32_t ghost = 0; ///< number of granules
+  KindRows kinds;                          ///< ledger only: of this step
+  KindRows kinds_before;                   ///< and of the one before
+  AccelerationRow* acceleration = nullptr; ///< ledger only
+  std::uint32_t ghost = 0;                 ///< number of granules
 };
 
 /// The memory of contacts (springs only): rows parallel to a list, entry by entry.
@@ -53,11 +60,11 @@ struct IndexRange {
 
 struct PairArguments {
   GranuleArrays granules;
-  const CandidatePair* pairs = nullptr;
-  std::size_t count = 0;           ///< a multiple of list_padding
-  PairOffsets* touching = nullptr; ///< scratch of pair_chunk + contact_padding entries
-  LawRow law{};                    ///< of all pairs (not with Variety::materials)
-  const LawRow* laws = nullptr;    ///< populations x populations (Variety::materials)
+  const RowPair* pairs = nullptr;
+  std::size_t count = 0;        ///< a multiple of list_padding
+  RowPair* touching = nullptr;  ///< scratch of pair_chunk + contact_padding entries
+  LawRow law{};                 ///< of all pairs (not with Variety::materials)
+  const LawRow* laws = nullptr; ///< populations x populations (Variety::materials)
   std::size_t populations = 1;
   double radius = 0.0;       ///< of every granule (Variety::alike), m
   double mass = 0.0;         ///< of every granule (Variety::alike), kg
@@ -139,10 +146,10 @@ struct CandidateArguments {
 /// Splits a list by the gap between two granules' surfaces.
 struct SplitArguments {
   const PositionRow* position = nullptr;
-  CandidatePair* pairs = nullptr; ///< split in place; room for list_padding more is read
+  RowPair* pairs = nullptr; ///< split in place; room for list_padding more is read
   std::size_t count = 0;
-  CandidatePair* scratch = nullptr; ///< count + list_padding entries
-  double reach = 0.0;               ///< gap below which a pair is near; alike: both radii and that gap, m
+  RowPair* scratch = nullptr; ///< count + list_padding entries
+  double reach = 0.0;         ///< gap below which a pair is near; alike: both radii and that gap, m
 };
 
 using PairKernel = void(const PairArguments&, ContactResult&);
@@ -152,7 +159,7 @@ using SplitKernel = std::size_t(const SplitArguments&);
 using MotionKernel = void(const MotionArguments&, MotionResult&);
 /// Granules [own.first, own.last) against those after them up to own_end, and against `count` ranges. Appends at `to`
 /// (which must have room for every pair tested, and list_padding more) and returns the new end.
-using CandidateKernel = CandidatePair*(const CandidateArguments&, IndexRange own, std::uint32_t own_end,
-                                       const IndexRange* ranges, int count, CandidatePair* to);
+using CandidateKernel = RowPair*(const CandidateArguments&, IndexRange own, std::uint32_t own_end,
+                                 const IndexRange* ranges, int count, RowPair* to);
 
 } // namespace grandamp::kernels

@@ -8,8 +8,8 @@ namespace grandamp::kernels {
 
 /// alike: `reach` holds both radii and the skin.
 template <class S, bool alike>
-CandidatePair* candidate_kernel(const CandidateArguments& a, IndexRange own, std::uint32_t own_end,
-                                const IndexRange* ranges, int count, CandidatePair* to) {
+RowPair* candidate_kernel(const CandidateArguments& a, IndexRange own, std::uint32_t own_end, const IndexRange* ranges,
+                          int count, RowPair* to) {
   using Vector = typename S::Vector;
   constexpr std::uint32_t width = S::width;
   for (std::uint32_t i = own.first; i < own.last; ++i) {
@@ -45,8 +45,8 @@ template <class S, bool alike> std::size_t split_kernel(const SplitArguments& a)
     Row rows[width];
     for (std::size_t lane = 0; lane < width; ++lane) {
       const std::size_t pair = k + lane < a.count ? k + lane : k;
-      rows[lane] = S::row_fnma(last_flipped, S::row_load(&a.position[a.pairs[pair].first].x),
-                               S::row_load(&a.position[a.pairs[pair].second].x));
+      rows[lane] = S::row_fnma(last_flipped, S::row_load(&row_at(a.position, a.pairs[pair].first_offset).x),
+                               S::row_load(&row_at(a.position, a.pairs[pair].second_offset).x));
     }
     Vector x, y, z, radii;
     S::columns(rows, x, y, z, radii);

@@ -106,6 +106,12 @@ GRANDAMP_INLINE void difference(Position position, typename S::Vector twice, typ
   if constexpr (alike) radii = twice;
 }
 
+GRANDAMP_INLINE auto positions(const PositionRow* position, const RowPair* pairs) {
+  return [=](int lane, bool second) __attribute__((always_inline))->const PositionRow& {
+    return row_at(position, second ? pairs[lane].second_offset : pairs[lane].first_offset);
+  };
+}
+
 /// Asks memory for rows, two at a time.
 template <class S> class RowsAhead {
 public:
@@ -138,28 +144,24 @@ private:
 /// Moves the pairs that touch to the scratch list; returns their number. `a` must be the caller's own copy: what is
 /// written here could otherwise be a part of it.
 template <class S, ContactEffects E>
-GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const CandidatePair* pairs, std::size_t count,
+GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const RowPair* pairs, std::size_t count,
                                      RowsAhead<S>& ahead) {
   using Vector = typename S::Vector;
   constexpr bool alike = E.variety == Variety::alike;
   constexpr std::size_t at_once = list_padding;
   const PositionRow* position = a.granules.position;
   const Vector twice = S::broadcast(2.0 * a.radius);
-  PairOffsets* to = a.touching;
+  RowPair* to = a.touching;
   for (std::size_t k = 0; k < count; k += at_once) {
     for (std::size_t part = k; part < k + at_once; part += S::width) {
-      const CandidatePair* here = pairs + part;
+      const RowPair* here = pairs + part;
       Vector x, y, z, radii;
-      difference<S, alike>(
-          [&](int lane, bool second) __attribute__((always_inline))->const PositionRow& {
-            return position[second ? here[lane].second : here[lane].first];
-          },
-          twice, x, y, z, radii);
+      difference<S, alike>(positions(position, here), twice, x, y, z, radii);
       const Vector square = S::fma(z, z, S::fma(y, y, x * x));
       const unsigned mask = S::less(square, radii * radii);
       if constexpr (E.remembers())
         select_slots<S>(static_cast<std::size_t>(here - a.pairs), mask, a.springs.slots + (to - a.touching));
-      to += S::select_offsets(here, mask, to);
+      to += S::select(here, mask, to);
     }
     ahead.ask();
     __builtin_prefetch(pairs + k + list_ahead);
@@ -178,17 +180,8 @@ template <class S, ContactEffects E> struct PairLoop {
   Vector max_overlap;
   Vector max_closing = S::broadcast(0.0);
 
-  std::size_t population(std::uint32_t offset) const { return a.granules.population[offset >> offset_bits]; }
-  auto positions(const PairOffsets* pairs) const {
-    return [ position = static_cast<const PositionRow*>(a.granules.position), pairs ](int lane, bool second)
-        __attribute__((always_inline))
-            ->const PositionRow& {
-      return row_at(position, second ? pairs[lane].second : pairs[lane].first);
-    };
-  }
-
   /// From i to j, the distance, the sum of the radii, and by how much they exceed it.
-  void approach(const PairOffsets* pairs, Vector& x, Vector& y, Vector& z, Vector& distance, Vector& radii,
+  void approach(const RowPair* pairs, Vector& x, Vector& y, Vector& z, Vector& distance, Vector& radii,
                 Vector& overlap) const {
     if constexpr (E.precision == Precision::mixed) {
       // An overlap is the small difference of two lengths: float could not tell it. (radii^2 - distance^2) is taken in
@@ -196,8 +189,8 @@ template <class S, ContactEffects E> struct PairLoop {
       using D = typename S::Double;
       typename D::Vector px[2], py[2], pz[2], sum[2], square[2], gap[2];
       for (int half = 0; half < 2; ++half) {
-        difference<D, alike>(positions(pairs + half * D::width), D::broadcast(2.0 * a.radius), px[half], py[half],
-                             pz[half], sum[half]);
+        difference<D, alike>(positions(a.granules.position, pairs + half * D::width), D::broadcast(2.0 * a.radius),
+                             px[half], py[half], pz[half], sum[half]);
         square[half] = D::fma(pz[half], pz[half], D::fma(py[half], py[half], px[half] * px[half]));
         gap[half] = sum[half] * sum[half] - square[half];
       }
@@ -208,13 +201,13 @@ template <class S, ContactEffects E> struct PairLoop {
       distance = S::sqrt(S::narrow(square));
       overlap = S::max(S::narrow(gap) / (radii + distance), S::broadcast(0.0));
     } else {
-      difference<S, alike>(positions(pairs), S::broadcast(2.0 * a.radius), x, y, z, radii);
+      difference<S, alike>(positions(a.granules.position, pairs), S::broadcast(2.0 * a.radius), x, y, z, radii);
       distance = S::sqrt(S::fma(z, z, S::fma(y, y, x * x)));
       overlap = S::max(radii - distance, S::broadcast(0.0));
     }
   }
 
-  void geometry(const PairOffsets* pairs, unsigned lanes, ContactGeometry<S>& c) {
+  void geometry(const RowPair* pairs, unsigned lanes, ContactGeometry<S>& c) {
     Vector x, y, z, distance, radii;
     approach(pairs, x, y, z, distance, radii, c.overlap);
 
@@ -222,8 +215,8 @@ template <class S, ContactEffects E> struct PairLoop {
     Row rows[width];
     Vector inverse_mass, inverse_radius;
     for (int lane = 0; lane < width; ++lane) {
-      const Row i = S::row_load(row_at(motion, pairs[lane].first).velocity);
-      const Row j = S::row_load(row_at(motion, pairs[lane].second).velocity);
+      const Row i = S::row_load(row_at(motion, pairs[lane].first_offset).velocity);
+      const Row j = S::row_load(row_at(motion, pairs[lane].second_offset).velocity);
       if constexpr (alike)
         rows[lane] = i - j;
       else
@@ -232,8 +225,8 @@ template <class S, ContactEffects E> struct PairLoop {
     S::columns(rows, c.vx, c.vy, c.vz, inverse_mass);
     if constexpr (E.rotates() || !alike) {
       for (int lane = 0; lane < width; ++lane)
-        rows[lane] = S::row_load(row_at(motion, pairs[lane].first).surface_spin) +
-                     S::row_load(row_at(motion, pairs[lane].second).surface_spin);
+        rows[lane] = S::row_load(row_at(motion, pairs[lane].first_offset).surface_spin) +
+                     S::row_load(row_at(motion, pairs[lane].second_offset).surface_spin);
       S::columns(rows, c.sx, c.sy, c.sz, inverse_radius);
     }
     Vector inverse; // of the distance
@@ -273,7 +266,7 @@ template <class S, ContactEffects E> struct PairLoop {
     return c;
   }
 
-  void forces(const PairOffsets* pairs, unsigned lanes, const ContactGeometry<S>& kept, ContactForces<S>& f,
+  void forces(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& kept, ContactForces<S>& f,
               ContactResult& result) {
     if constexpr (alike)
       forces_of(pairs, lanes, completed(kept), f, result);
@@ -281,12 +274,12 @@ template <class S, ContactEffects E> struct PairLoop {
       forces_of(pairs, lanes, kept, f, result);
   }
 
-  [[gnu::always_inline]] void forces_of(const PairOffsets* pairs, unsigned lanes, const ContactGeometry<S>& c,
+  [[gnu::always_inline]] void forces_of(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& c,
                                         ContactForces<S>& f, ContactResult& result) {
     LawVectors<S> law;
     if constexpr (E.variety == Variety::materials)
       law = gathered_laws<S>(a.laws, [&](int lane) {
-        return population(pairs[lane].first) * a.populations + population(pairs[lane].second);
+        return a.granules.population[pairs[lane].first()] * a.populations + a.granules.population[pairs[lane].second()];
       });
     else
       law = common_law<S>(a.law);
@@ -299,9 +292,9 @@ template <class S, ContactEffects E> struct PairLoop {
       if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
     } else if constexpr (E.counts()) {
       const ForceRow* force = a.granules.force;
-      const Vector share =
-          S::min(friction_shares<S>([&](int lane) -> const ForceRow& { return row_at(force, pairs[lane].first); }),
-                 friction_shares<S>([&](int lane) -> const ForceRow& { return row_at(force, pairs[lane].second); }));
+      const Vector share = S::min(
+          friction_shares<S>([&](int lane) -> const ForceRow& { return row_at(force, pairs[lane].first_offset); }),
+          friction_shares<S>([&](int lane) -> const ForceRow& { return row_at(force, pairs[lane].second_offset); }));
       contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
@@ -312,13 +305,13 @@ template <class S, ContactEffects E> struct PairLoop {
     }
   }
 
-  ContactMemory<S> recall(const PairOffsets* pairs, const std::uint32_t* slots) const {
+  ContactMemory<S> recall(const RowPair* pairs, const std::uint32_t* slots) const {
     ContactMemory<S> memory;
     memory.spring = remembered<S>(a.springs, slots);
     memory.time_step = S::broadcast(a.springs.time_step);
     if constexpr (E.variety == Variety::materials)
       memory.law = gathered_laws<S>(a.springs.laws, [&](int lane) {
-        return population(pairs[lane].first) * a.populations + population(pairs[lane].second);
+        return a.granules.population[pairs[lane].first()] * a.populations + a.granules.population[pairs[lane].second()];
       });
     else
       memory.law = common_law<S>(a.springs.law);
@@ -327,7 +320,7 @@ template <class S, ContactEffects E> struct PairLoop {
     if (memory.moved_otherwise) {
       Row rows[width], spins[width];
       for (int lane = 0; lane < width; ++lane) {
-        const MotionRow &i = row_at(motion, pairs[lane].first), &j = row_at(motion, pairs[lane].second);
+        const MotionRow &i = row_at(motion, pairs[lane].first_offset), &j = row_at(motion, pairs[lane].second_offset);
         rows[lane] = S::row_load(i.velocity) - S::row_load(j.velocity);
         spins[lane] = S::row_load(i.surface_spin) + S::row_load(j.surface_spin);
       }
@@ -338,7 +331,7 @@ template <class S, ContactEffects E> struct PairLoop {
     return memory;
   }
 
-  void add_rows(const PairOffsets* pairs, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
+  void add_rows(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
     const Vector zero = S::broadcast(0.0);
     Row forces[width], turns[width];
     S::rows(f.fx, f.fy, f.fz, E.counts() ? S::broadcast(1.0) : zero, forces);
@@ -348,8 +341,8 @@ template <class S, ContactEffects E> struct PairLoop {
 #pragma GCC unroll 16
     for (unsigned lane = 0; lane < width; ++lane) {
       if (lane >= lanes) break;
-      ForceRow& i = row_at(force, pairs[lane].first);
-      ForceRow& j = row_at(force, pairs[lane].second);
+      ForceRow& i = row_at(force, pairs[lane].first_offset);
+      ForceRow& j = row_at(force, pairs[lane].second_offset);
       S::row_store(i.force, S::row_load(i.force) + forces[lane]);
       if constexpr (E.counts()) // both count it
         S::row_store(j.force, S::row_fnma(last_flipped, forces[lane], S::row_load(j.force)));
@@ -364,8 +357,8 @@ template <class S, ContactEffects E> struct PairLoop {
       Row damping[width];
       S::rows((zero - f.damping) * c.nx, (zero - f.damping) * c.ny, (zero - f.damping) * c.nz, zero, damping);
       for (unsigned lane = 0; lane < lanes; ++lane) {
-        double* i = row_at(a.granules.damping_granule, pairs[lane].first).force;
-        double* j = row_at(a.granules.damping_granule, pairs[lane].second).force;
+        double* i = row_at(a.granules.kinds.damping_granule, pairs[lane].first_offset).force;
+        double* j = row_at(a.granules.kinds.damping_granule, pairs[lane].second_offset).force;
         S::row_store(i, S::row_load(i) + damping[lane]);
         S::row_store(j, S::row_load(j) - damping[lane]);
       }
@@ -374,8 +367,8 @@ template <class S, ContactEffects E> struct PairLoop {
       Row rubbing[width];
       S::rows(f.rx, f.ry, f.rz, zero, rubbing);
       for (unsigned lane = 0; lane < lanes; ++lane) {
-        ForceRow& i = row_at(a.granules.friction_granule, pairs[lane].first);
-        ForceRow& j = row_at(a.granules.friction_granule, pairs[lane].second);
+        ForceRow& i = row_at(a.granules.kinds.friction_granule, pairs[lane].first_offset);
+        ForceRow& j = row_at(a.granules.kinds.friction_granule, pairs[lane].second_offset);
         S::row_store(i.force, S::row_load(i.force) + rubbing[lane]);
         S::row_store(j.force, S::row_load(j.force) - rubbing[lane]);
         if constexpr (E.rotates()) {
@@ -386,14 +379,14 @@ template <class S, ContactEffects E> struct PairLoop {
     }
   }
 
-  [[gnu::noinline]] static Vector deepest(const PositionRow* position, const PairOffsets* pairs, unsigned lanes,
+  [[gnu::noinline]] static Vector deepest(const PositionRow* position, const RowPair* pairs, unsigned lanes,
                                           Vector overlap, Vector so_far) {
     double overlaps[width];
     S::store(overlaps, overlap);
     double record = largest<S>(so_far, 0.0);
     for (unsigned lane = 0; lane < lanes; ++lane) {
-      const double i = row_at(position, pairs[lane].first).radius;
-      const double j = row_at(position, pairs[lane].second).radius;
+      const double i = row_at(position, pairs[lane].first_offset).radius;
+      const double j = row_at(position, pairs[lane].second_offset).radius;
       const double ratio = overlaps[lane] / (i < j ? i : j);
       record = ratio > record ? ratio : record;
     }
@@ -426,13 +419,13 @@ template <class S, ContactEffects E> void pair_kernel(const PairArguments& argum
           work(a.touching + first + k, static_cast<unsigned>(left_here - k < S::width ? left_here - k : S::width),
                k / S::width);
       };
-      each([&](const PairOffsets* pairs, unsigned lanes, std::size_t v) __attribute__((always_inline)) {
+      each([&](const RowPair* pairs, unsigned lanes, std::size_t v) __attribute__((always_inline)) {
         loop.geometry(pairs, lanes, geometry[v]);
         ahead.ask();
       });
-      each([&](const PairOffsets* pairs, unsigned lanes, std::size_t v)
+      each([&](const RowPair* pairs, unsigned lanes, std::size_t v)
                __attribute__((always_inline)) { loop.forces(pairs, lanes, geometry[v], forces[v], result); });
-      each([&](const PairOffsets* pairs, unsigned lanes, std::size_t v)
+      each([&](const RowPair* pairs, unsigned lanes, std::size_t v)
                __attribute__((always_inline)) { loop.add_rows(pairs, lanes, geometry[v], forces[v]); });
     }
   }

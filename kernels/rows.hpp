@@ -36,6 +36,14 @@ struct alignas(32) DampingRow {
   double unused;
 };
 
+/// How fast velocity and spin changed in the step before, for the ledger.
+struct alignas(64) AccelerationRow {
+  double velocity[3]; ///< m/s^2
+  double unused;
+  double surface_spin[3]; ///< m/s^2
+  double neither;
+};
+
 /// The tangential spring of a contact in touch: its force on the first granule (N), and sqrt(R overlap) (m) at the
 /// step of `touched`.
 struct alignas(32) SpringRow {
@@ -43,21 +51,23 @@ struct alignas(32) SpringRow {
   double root;
 };
 
-/// Two sorted indices closer than their radii and the skin; first < second.
-struct alignas(8) CandidatePair {
-  std::uint32_t first;
-  std::uint32_t second;
-};
-
-/// The places of a pair's rows in bytes from the first position; rows of 64 bytes stand twice as far from their first.
-/// So an address is one instruction's operand, wherever a contact needs its rows.
-struct alignas(8) PairOffsets {
-  std::uint32_t first;
-  std::uint32_t second;
-};
-inline constexpr int offset_bits = 5; ///< an index shifted by these
+inline constexpr int offset_bits = 5; ///< a row's index shifted by these: bytes from the first position
 static_assert(sizeof(PositionRow) == 1U << offset_bits);
 inline constexpr std::uint32_t most_rows = 1U << (32 - offset_bits);
+
+/// Two granules, as the places of their rows in bytes from the first position; rows of 64 bytes stand twice as far from
+/// their first. So an address is one instruction's operand, wherever a pair needs its rows. In a Verlet list: two
+/// closer than their radii and the skin, the first row before the second.
+struct alignas(8) RowPair {
+  std::uint32_t first_offset;
+  std::uint32_t second_offset;
+
+  static constexpr RowPair of(std::uint32_t first, std::uint32_t second) {
+    return {first << offset_bits, second << offset_bits};
+  }
+  constexpr std::uint32_t first() const { return first_offset >> offset_bits; }
+  constexpr std::uint32_t second() const { return second_offset >> offset_bits; }
+};
 
 template <class Row> [[gnu::always_inline]] static inline Row& row_at(Row* rows, std::uint32_t offset) {
   using Byte = std::conditional_t<std::is_const_v<Row>, const char, char>;

@@ -16,7 +16,6 @@
 //   rows(a, b, c, d, rows)          and back
 //   select(from, mask, to)          moves the marked ones of `width` list entries together; returns their number.
 //                                   Reads and writes `width` entries.
-//   select_offsets(from, mask, to)  the same for a list of pairs, as offsets
 //   select_partners(first, base, mask, to)   the pairs (first, base + lane) of the marked lanes
 //
 // A mixed set (simd_..._mixed.hpp) has lanes of float, twice as many, and rows of double all the same: columns and rows

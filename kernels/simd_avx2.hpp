@@ -62,12 +62,8 @@ struct Avx2 {
     columns(in, r[0], r[1], r[2], r[3]);
   }
 
-  GRANDAMP_INLINE unsigned select(const CandidatePair* from, unsigned mask, CandidatePair* to) {
+  GRANDAMP_INLINE unsigned select(const RowPair* from, unsigned mask, RowPair* to) {
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), together(from, mask));
-    return static_cast<unsigned>(__builtin_popcount(mask));
-  }
-  GRANDAMP_INLINE unsigned select_offsets(const CandidatePair* from, unsigned mask, PairOffsets* to) {
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_slli_epi32(together(from, mask), offset_bits));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
   GRANDAMP_INLINE unsigned select(const std::uint32_t* from, unsigned mask, std::uint32_t* to) {
@@ -76,16 +72,18 @@ struct Avx2 {
     _mm_storeu_ps(reinterpret_cast<float*>(to), _mm_permutevar_ps(values, order));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
-  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, CandidatePair* to) {
-    const __m256i partners = _mm256_add_epi64(_mm256_set1_epi64x(static_cast<long long>(base) << 32 | first),
-                                              _mm256_setr_epi64x(0, 1LL << 32, 2LL << 32, 3LL << 32));
+  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, RowPair* to) {
+    const RowPair pair = RowPair::of(first, base);
+    const __m256i partners = _mm256_add_epi64(
+        _mm256_set1_epi64x(static_cast<long long>(pair.second_offset) << 32 | pair.first_offset),
+        _mm256_setr_epi64x(0, 1LL << (32 + offset_bits), 2LL << (32 + offset_bits), 3LL << (32 + offset_bits)));
     const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(avx2_select_table[mask]));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(partners, order));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
 
 private:
-  GRANDAMP_INLINE __m256i together(const CandidatePair* from, unsigned mask) {
+  GRANDAMP_INLINE __m256i together(const RowPair* from, unsigned mask) {
     const __m256i pairs = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
     const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(avx2_select_table[mask]));
     return _mm256_permutevar8x32_epi32(pairs, order);

@@ -69,14 +69,9 @@ struct Avx512 {
     r[7] = _mm512_extractf64x4_pd(r37, 1);
   }
 
-  GRANDAMP_INLINE unsigned select(const CandidatePair* from, unsigned mask, CandidatePair* to) {
+  GRANDAMP_INLINE unsigned select(const RowPair* from, unsigned mask, RowPair* to) {
     const __m512i pairs = _mm512_loadu_si512(from);
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), pairs));
-    return static_cast<unsigned>(__builtin_popcount(mask));
-  }
-  GRANDAMP_INLINE unsigned select_offsets(const CandidatePair* from, unsigned mask, PairOffsets* to) {
-    const __m512i pairs = _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), _mm512_loadu_si512(from));
-    _mm512_storeu_si512(to, _mm512_slli_epi32(pairs, offset_bits));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
   GRANDAMP_INLINE unsigned select(const std::uint32_t* from, unsigned mask, std::uint32_t* to) {
@@ -85,10 +80,12 @@ struct Avx512 {
                         _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), values));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
-  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, CandidatePair* to) {
-    const __m512i lanes =
-        _mm512_setr_epi64(0, 1LL << 32, 2LL << 32, 3LL << 32, 4LL << 32, 5LL << 32, 6LL << 32, 7LL << 32);
-    const __m512i partners = _mm512_add_epi64(_mm512_set1_epi64(static_cast<long long>(base) << 32 | first), lanes);
+  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, RowPair* to) {
+    constexpr long long next = 1LL << (32 + offset_bits);
+    const __m512i lanes = _mm512_setr_epi64(0, next, 2 * next, 3 * next, 4 * next, 5 * next, 6 * next, 7 * next);
+    const RowPair pair = RowPair::of(first, base);
+    const __m512i partners = _mm512_add_epi64(
+        _mm512_set1_epi64(static_cast<long long>(pair.second_offset) << 32 | pair.first_offset), lanes);
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), partners));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }

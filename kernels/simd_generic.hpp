@@ -59,18 +59,10 @@ struct Generic {
     columns(in, r[0], r[1], r[2], r[3]);
   }
 
-  GRANDAMP_INLINE unsigned select(const CandidatePair* from, unsigned mask, CandidatePair* to) {
+  GRANDAMP_INLINE unsigned select(const RowPair* from, unsigned mask, RowPair* to) {
     unsigned n = 0;
     for (unsigned lane = 0; lane < 4; ++lane) {
       to[n] = from[lane];
-      n += (mask >> lane) & 1U;
-    }
-    return n;
-  }
-  GRANDAMP_INLINE unsigned select_offsets(const CandidatePair* from, unsigned mask, PairOffsets* to) {
-    unsigned n = 0;
-    for (unsigned lane = 0; lane < 4; ++lane) {
-      to[n] = {from[lane].first << offset_bits, from[lane].second << offset_bits};
       n += (mask >> lane) & 1U;
     }
     return n;
@@ -83,10 +75,10 @@ struct Generic {
     }
     return n;
   }
-  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, CandidatePair* to) {
+  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, RowPair* to) {
     unsigned n = 0;
     for (unsigned lane = 0; lane < 4; ++lane) {
-      to[n] = {first, base + lane};
+      to[n] = RowPair::of(first, base + lane);
       n += (mask >> lane) & 1U;
     }
     return n;

@@ -146,7 +146,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       Row damping[width];
       S::rows((zero - f.damping) * c.nx, (zero - f.damping) * c.ny, (zero - f.damping) * c.nz, zero, damping);
       for (unsigned lane = 0; lane < lanes; ++lane) {
-        double* i = a.granules.damping_wall[list[lane]].force;
+        double* i = a.granules.kinds.damping_wall[list[lane]].force;
         S::row_store(i, S::row_load(i) + damping[lane]);
       }
     }
@@ -154,7 +154,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       Row rubbing[width];
       S::rows(f.rx, f.ry, f.rz, zero, rubbing);
       for (unsigned lane = 0; lane < lanes; ++lane) {
-        ForceRow& i = a.granules.friction_wall[list[lane]];
+        ForceRow& i = a.granules.kinds.friction_wall[list[lane]];
         S::row_store(i.force, S::row_load(i.force) + rubbing[lane]);
         if constexpr (E.rotates()) S::row_store(i.turn, S::row_load(i.turn) + turns[lane]);
       }

@@ -1,12 +1,13 @@
 // An experiment, not a part of the solver: what could make a contact more exact at the same step? A plain scalar damper
-// (a box on a structure, Hertz, Tsuji, Coulomb, rotation) with three ways to take a step:
+// (a box on a structure, Hertz, Tsuji, Coulomb, rotation) with three ways to take a step.
 //   fifth: leapfrog, force at t_n from the overlap at t_n and the velocities of t_(n-1/2); friction may take a fifth
-//     of what would stop the slip in a step
+//   of what would stop the slip in a step.
 //   averaged: the same, but the normal force averaged over the step along the path that the contact's own force
-//   predicts shared: leapfrog; friction may take 1/(1 + n), n the contacts of the busier granule a step ago, but at
-//   most half:
-//     the solver's
-// Prints the error of single contacts, the energy of an elastic gas, and a damper's observables over seeds.
+//   predicts.
+//   shared: leapfrog; friction may take 1/(1 + n), n the contacts of the busier granule a step ago, but at most half:
+//   the solver's.
+// Prints the error of single contacts, what a ledger of them leaves over, the energy of an elastic gas, and a damper's
+// observables over seeds.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -209,9 +210,12 @@ Damper damper_of(double radius, double restitution, double friction) {
   return d;
 }
 
+/// Of unit mass, stiffness and speed.
+constexpr double contact_time_of_one = 3.2180;
+
 double contact_duration(const Damper& d, double speed) {
   const double m = 0.5 * d.mass;
-  return 3.2180 * std::pow(m * m / (d.pair.stiffness * d.pair.stiffness * speed), 0.2);
+  return contact_time_of_one * std::pow(m * m / (d.pair.stiffness * d.pair.stiffness * speed), 0.2);
 }
 
 void fill(Damper& d, int count, double speed) {
@@ -273,6 +277,56 @@ void single_contacts() {
       std::printf("%-9s %3g  %.5f %.5f %.5f  %.5f\n", names[static_cast<int>(scheme)], steps, straight, mean, deviation,
                   oblique);
     }
+}
+
+/// One granule of unit mass head on against a wall of unit stiffness at unit speed: its energy before, less that after,
+/// less what damping took by the sum of c v^2 dt, with v at t_n taken in three ways; over its loss, in the mean over
+/// phases of entry.
+std::array<double, 3> left_over(double alpha, double steps, bool verlet, double& restitution) {
+  const double dt = contact_time_of_one / steps;
+  std::array<double, 3> sums{};
+  double losses = 0.0;
+  restitution = 0.0;
+  constexpr int phases = 64;
+  for (int p = 0; p < phases; ++p) {
+    double x = -(p + 0.5) / phases * dt, v = 1.0, kick = 0.0, kick_before = 0.0, damping_before = 0.0,
+           mean_before = 1.0;
+    std::array<double, 3> taken{};
+    for (int n = 0; n < 3 || x > 0.0 || kick != 0.0; ++n) {
+      const double overlap = std::max(x, 0.0), seen = verlet ? v + 0.5 * kick : v;
+      const double damping = alpha * std::sqrt(std::sqrt(overlap)) * seen;
+      const double now = -(overlap * std::sqrt(overlap) + damping) * dt, mean = v + 0.5 * now;
+      taken[0] += damping * mean * dt;
+      taken[1] += damping * (mean - (now - kick) / 6.0) * dt;
+      taken[2] += damping_before * (mean_before - (now - kick_before) / 12.0) * dt; // of the step before
+      kick_before = kick;
+      kick = now;
+      damping_before = damping;
+      mean_before = mean;
+      v += now;
+      x += v * dt;
+    }
+    const double loss = 0.5 * (1.0 - v * v);
+    losses += loss / phases;
+    restitution -= v / phases;
+    for (std::size_t k = 0; k < 3; ++k) sums[k] += (loss - taken[k]) / phases;
+  }
+  for (double& sum : sums) sum /= losses;
+  return sums;
+}
+
+void ledgers() {
+  std::printf(
+      "what the ledger of one contact leaves over, of its loss: integrator, steps, e; velocity the mean of two half "
+      "steps, with a one-sided difference, with a central one\n");
+  for (const bool verlet : {false, true})
+    for (const double alpha : {0.05, 0.2, 0.5, 1.2})
+      for (const double steps : {6.0, 8.0, 16.0}) {
+        double restitution = 0.0;
+        const std::array<double, 3> left = left_over(alpha, steps, verlet, restitution);
+        std::printf("%-9s %3g  %.3f  %+.4f %+.4f %+.4f\n", verlet ? "verlet" : "leapfrog", steps, restitution, left[0],
+                    left[1], left[2]);
+      }
 }
 
 void elastic_gas() {
@@ -350,6 +404,7 @@ int main(int argc, char** argv) {
   const int seeds = argc > 1 ? std::atoi(argv[1]) : 8;
   const double duration = argc > 2 ? std::atof(argv[2]) : 2.0;
   single_contacts();
+  ledgers();
   elastic_gas();
   if (seeds > 0) damper_observables(seeds, duration);
 }

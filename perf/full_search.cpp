@@ -149,14 +149,14 @@ private:
       }
     room = (room + end_of(high, middle, slow) - own.first) * (own.last - own.first);
     if (pairs_.size() < kept + room) pairs_.resize(2 * (kept + room));
-    kernels::CandidatePair* const from = pairs_.data() + kept;
-    const kernels::CandidatePair* const end =
+    kernels::RowPair* const from = pairs_.data() + kept;
+    const kernels::RowPair* const end =
         search_(a, own, full_ ? 0 : end_of(high, middle, slow), ranges.data(), count, from);
     found_ += static_cast<std::size_t>(end - from);
     if (!full_) return kept + static_cast<std::size_t>(end - from);
     // Both sides have found the pair (and each granule itself): one of them keeps it.
-    for (const kernels::CandidatePair* pair = from; pair != end; ++pair)
-      if (pair->first < pair->second) pairs_[kept++] = *pair;
+    for (const kernels::RowPair* pair = from; pair != end; ++pair)
+      if (pair->first_offset < pair->second_offset) pairs_[kept++] = *pair;
     return kept;
   }
 
@@ -201,8 +201,8 @@ private:
   kernels::LawRow pair_law_{}, wall_law_{};
   double friction_cap_ = 0.0;
   std::vector<double> x_, y_, z_;
-  std::vector<kernels::CandidatePair> pairs_;
-  std::vector<kernels::PairOffsets> touching_;
+  std::vector<kernels::RowPair> pairs_;
+  std::vector<kernels::RowPair> touching_;
   std::vector<std::uint32_t> near_, touching_wall_;
   std::size_t found_ = 0;
 };

@@ -54,8 +54,8 @@ struct Bed {
   }
 
   /// Pairs closer than `reach` between centres, in sorted order, padded.
-  std::vector<kernels::CandidatePair> pairs(double reach) const {
-    std::vector<kernels::CandidatePair> list;
+  std::vector<kernels::RowPair> pairs(double reach) const {
+    std::vector<kernels::RowPair> list;
     const int n = side;
     for (std::uint32_t i = 0; i < granules.count(); ++i)
       for (int dz = 0; dz <= 1; ++dz)
@@ -66,9 +66,10 @@ struct Bed {
             if (x < 0 || x >= n || y < 0 || y >= n || z >= n) continue;
             const auto j = static_cast<std::uint32_t>((z * n + y) * n + x);
             const auto &a = granules.position[i], &b = granules.position[j];
-            if (std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) < reach) list.push_back({i, j});
+            if (std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) < reach) list.push_back(kernels::RowPair::of(i, j));
           }
-    while (list.size() % kernels::list_padding != 0) list.push_back({granules.count(), granules.count() + 1});
+    while (list.size() % kernels::list_padding != 0)
+      list.push_back(kernels::RowPair::of(granules.count(), granules.count() + 1));
     return list;
   }
 
@@ -89,8 +90,8 @@ constexpr int bed_side = 13; // 2,197 granules: S1's number
 
 void pair_bench(benchmark::State& state, InstructionSet set, ContactEffects effects, bool touching) {
   Bed bed(bed_side, (touching ? 1.97 : 2.1) * radius, (touching ? 0.005 : 0.03) * radius, effects.ledger());
-  const std::vector<kernels::CandidatePair> list = bed.pairs((touching ? 2.0 : 2.3) * radius);
-  std::vector<kernels::PairOffsets> scratch(kernels::pair_chunk + kernels::contact_padding);
+  const std::vector<kernels::RowPair> list = bed.pairs((touching ? 2.0 : 2.3) * radius);
+  std::vector<kernels::RowPair> scratch(kernels::pair_chunk + kernels::contact_padding);
   kernels::PairArguments a;
   a.granules = bed.granules.arrays();
   a.pairs = list.data();

@@ -16,7 +16,7 @@ void Audit::compare(const Granules& granules, const VerletList& list, const std:
   for (const Segment& segment : list.segments()) {
     for (const PairList* pairs : {&segment.inner, &segment.boundary})
       for (std::size_t k = 0; k < pairs->count(); ++k)
-        listed.insert(key(pairs->data()[k].first, pairs->data()[k].second));
+        listed.insert(key(pairs->data()[k].first(), pairs->data()[k].second()));
     for (std::size_t w = 0; w < walls.size(); ++w)
       for (std::size_t k = 0; k < segment.walls[w].count; ++k)
         listed.insert(key(segment.walls[w].granules[k], count + 2 + static_cast<std::uint32_t>(w)));

@@ -8,7 +8,7 @@ std::vector<std::int32_t> contacts_by_id(const Granules& granules, const VerletL
   for (const Segment& segment : list.segments()) {
     for (const PairList* pairs : {&segment.inner, &segment.boundary})
       for (std::size_t k = 0; k < pairs->count(); ++k) {
-        const auto [i, j] = pairs->data()[k];
+        const std::uint32_t i = pairs->data()[k].first(), j = pairs->data()[k].second();
         if (i >= granules.count() || j >= granules.count()) continue; // padding
         const kernels::PositionRow &a = granules.position[i], &b = granules.position[j];
         const double x = b.x - a.x, y = b.y - a.y, z = b.z - a.z, reach = a.radius + b.radius;

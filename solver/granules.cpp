@@ -1,5 +1,6 @@
 #include "solver/granules.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace grandamp {
@@ -7,21 +8,63 @@ namespace grandamp {
 namespace {
 constexpr std::size_t ghosts = 2;
 
-template <class T> void clear(RowArray<T>& rows, std::uint32_t first, std::uint32_t last) {
+template <class T> void clear_rows(RowArray<T>& rows, std::uint32_t first, std::uint32_t last) {
   if (rows.size() > 0) std::memset(static_cast<void*>(rows.data() + first), 0, (last - first) * sizeof(T));
 }
 } // namespace
 
+ForcesByKind::ForcesByKind(std::size_t rows)
+    : damping_granule(rows), damping_wall(rows), friction_granule(rows), friction_wall(rows) {
+  clear(0, static_cast<std::uint32_t>(rows));
+}
+
+kernels::KindRows ForcesByKind::arrays() {
+  return {damping_granule.data(), damping_wall.data(), friction_granule.data(), friction_wall.data()};
+}
+
+void ForcesByKind::clear(std::uint32_t first, std::uint32_t last) {
+  clear_rows(damping_granule, first, last);
+  clear_rows(damping_wall, first, last);
+  clear_rows(friction_granule, first, last);
+  clear_rows(friction_wall, first, last);
+}
+
+void ForcesByKind::take(const ForcesByKind& from, const std::uint32_t* order, std::uint32_t first, std::uint32_t last) {
+  if (damping_granule.size() == 0) return;
+  for (std::uint32_t k = first; k < last; ++k) {
+    damping_granule[k] = from.damping_granule[order[k]];
+    damping_wall[k] = from.damping_wall[order[k]];
+    friction_granule[k] = from.friction_granule[order[k]];
+    friction_wall[k] = from.friction_wall[order[k]];
+  }
+}
+
+ForcesByKind ForcesByKind::copy() const {
+  ForcesByKind all(damping_granule.size());
+  std::copy_n(damping_granule.data(), damping_granule.size(), all.damping_granule.data());
+  std::copy_n(damping_wall.data(), damping_wall.size(), all.damping_wall.data());
+  std::copy_n(friction_granule.data(), friction_granule.size(), all.friction_granule.data());
+  std::copy_n(friction_wall.data(), friction_wall.size(), all.friction_wall.data());
+  return all;
+}
+
+void ForcesByKind::swap(ForcesByKind& other) noexcept {
+  damping_granule.swap(other.damping_granule);
+  damping_wall.swap(other.damping_wall);
+  friction_granule.swap(other.friction_granule);
+  friction_wall.swap(other.friction_wall);
+}
+
 Granules::Granules(std::size_t count, GranuleStorage storage)
     : position(count + ghosts), motion(count + ghosts), predicted(storage.predicted ? count + ghosts : 0),
-      force(count + ghosts), id(count + ghosts), population(count + ghosts),
-      damping_granule(storage.ledger ? count + ghosts : 0), damping_wall(storage.ledger ? count + ghosts : 0),
-      friction_granule(storage.ledger ? count + ghosts : 0), friction_wall(storage.ledger ? count + ghosts : 0),
+      force(count + ghosts), id(count + ghosts), population(count + ghosts), kinds(storage.ledger ? count + ghosts : 0),
+      kinds_before(storage.ledger ? count + ghosts : 0), acceleration(storage.ledger ? count + ghosts : 0),
       count_(static_cast<std::uint32_t>(count)), spare_position_(count + ghosts), spare_predicted_(predicted.size()),
       spare_id_(count + ghosts), spare_population_(count + ghosts), share_(storage.shares ? count + ghosts : 0),
-      spare_share_(share_.size()) {
+      spare_share_(share_.size()), spare_acceleration_(acceleration.size()) {
   for (std::size_t i = 0; i < share_.size(); ++i) share_[i] = 0.5; // nothing has touched yet
   clear_forces(0, count_ + ghosts);
+  clear_rows(acceleration, 0, count_ + ghosts);
 }
 
 kernels::GranuleArrays Granules::arrays() {
@@ -31,10 +74,9 @@ kernels::GranuleArrays Granules::arrays() {
   a.predicted = predicted.size() > 0 ? predicted.data() : motion.data();
   a.force = force.data();
   a.population = population.data();
-  a.damping_granule = damping_granule.data();
-  a.damping_wall = damping_wall.data();
-  a.friction_granule = friction_granule.data();
-  a.friction_wall = friction_wall.data();
+  a.kinds = kinds.arrays();
+  a.kinds_before = kinds_before.arrays();
+  a.acceleration = acceleration.data();
   a.ghost = count_;
   return a;
 }
@@ -57,6 +99,9 @@ void Granules::permute(const std::uint32_t* order, std::uint32_t first, std::uin
     for (std::uint32_t k = first; k < last; ++k) spare_predicted_[k] = predicted[order[k]];
   if (share_.size() > 0)
     for (std::uint32_t k = first; k < last; ++k) spare_share_[k] = share_[order[k]];
+  if (acceleration.size() > 0)
+    for (std::uint32_t k = first; k < last; ++k) spare_acceleration_[k] = acceleration[order[k]];
+  kinds.take(kinds_before, order, first, last);
 }
 
 void Granules::swap_permuted() {
@@ -66,15 +111,14 @@ void Granules::swap_permuted() {
   predicted.swap(spare_predicted_);
   share_.swap(spare_share_);
   motion.swap_memory(force); // where permute() put the rows
+  acceleration.swap(spare_acceleration_);
+  kinds.swap(kinds_before);
   set_ghosts();
 }
 
 void Granules::clear_forces(std::uint32_t first, std::uint32_t last) {
-  clear(force, first, last);
-  clear(damping_granule, first, last);
-  clear(damping_wall, first, last);
-  clear(friction_granule, first, last);
-  clear(friction_wall, first, last);
+  clear_rows(force, first, last);
+  kinds.clear(first, last);
   if (share_.size() > 0)
     for (std::uint32_t i = first; i < last; ++i) force[i].friction_share = share_[i];
 }

@@ -11,8 +11,23 @@ namespace grandamp {
 /// What the rows must hold besides position, motion and force.
 struct GranuleStorage {
   bool predicted = false; ///< velocities predicted to the full step (verlet)
-  bool ledger = false;    ///< forces by mechanism
+  bool ledger = false;    ///< forces by mechanism, and accelerations
   bool shares = false;    ///< ForceRow::friction_share lasts from step to step
+};
+
+/// Forces by kind, for the ledger; empty without one.
+struct ForcesByKind {
+  RowArray<kernels::DampingRow> damping_granule, damping_wall;
+  RowArray<kernels::ForceRow> friction_granule, friction_wall;
+
+  ForcesByKind() = default;
+  explicit ForcesByKind(std::size_t rows);
+  kernels::KindRows arrays();
+  void clear(std::uint32_t first, std::uint32_t last);
+  /// Row k becomes what row order[k] of `from` is.
+  void take(const ForcesByKind& from, const std::uint32_t* order, std::uint32_t first, std::uint32_t last);
+  void swap(ForcesByKind& other) noexcept;
+  ForcesByKind copy() const;
 };
 
 /// Structure of arrays. Each array has two ghost rows at its end (kernels::GranuleArrays).
@@ -29,8 +44,8 @@ public:
   RowArray<kernels::ForceRow> force;
   RowArray<std::uint32_t> id; ///< scene order, by row
   RowArray<std::uint8_t> population;
-  RowArray<kernels::DampingRow> damping_granule, damping_wall;
-  RowArray<kernels::ForceRow> friction_granule, friction_wall;
+  ForcesByKind kinds, kinds_before;                ///< of this step, and of the one before
+  RowArray<kernels::AccelerationRow> acceleration; ///< over the step before
 
   kernels::GranuleArrays arrays();
 
@@ -40,6 +55,8 @@ public:
   void permute(const std::uint32_t* order, std::uint32_t first, std::uint32_t last);
   void swap_permuted();
   void clear_forces(std::uint32_t first, std::uint32_t last);
+  /// After a step: its forces by kind are those of the step before.
+  void age_kinds() noexcept { kinds.swap(kinds_before); }
   /// Puts the two ghost rows in place.
   void set_ghosts();
 
@@ -50,6 +67,7 @@ private:
   RowArray<std::uint32_t> spare_id_;
   RowArray<std::uint8_t> spare_population_;
   RowArray<double> share_, spare_share_;
+  RowArray<kernels::AccelerationRow> spare_acceleration_;
 };
 
 } // namespace grandamp

@@ -39,7 +39,7 @@ std::string deepest_contact(const GuardView& view) {
   for (const Segment& segment : view.list.segments()) {
     for (const PairList* pairs : {&segment.inner, &segment.boundary})
       for (std::size_t k = 0; k < pairs->count(); ++k) {
-        const auto [i, j] = pairs->data()[k];
+        const std::uint32_t i = pairs->data()[k].first(), j = pairs->data()[k].second();
         const kernels::PositionRow &a = view.granules.position[i], &b = view.granules.position[j];
         const double overlap = a.radius + b.radius - std::hypot(b.x - a.x, b.y - a.y, b.z - a.z);
         const double ratio = overlap / std::min(a.radius, b.radius);
@@ -84,7 +84,7 @@ std::string neighbours_of(const GuardView& view, std::uint32_t row) {
   for (const Segment& segment : view.list.segments()) {
     for (const PairList* pairs : {&segment.inner, &segment.boundary})
       for (std::size_t k = 0; k < pairs->count(); ++k) {
-        const auto [i, j] = pairs->data()[k];
+        const std::uint32_t i = pairs->data()[k].first(), j = pairs->data()[k].second();
         if ((i != row && j != row) || i >= view.granules.count()) continue;
         const std::uint32_t other = i == row ? j : i;
         const kernels::PositionRow& b = view.granules.position[other];

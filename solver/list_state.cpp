@@ -1,7 +1,6 @@
 #include "solver/list_state.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include <fmt/format.h>
 
@@ -9,20 +8,18 @@ namespace grandamp {
 
 namespace {
 
-using kernels::CandidatePair;
-
-static_assert(sizeof(CandidatePair) == 2 * sizeof(std::uint32_t));
+using kernels::RowPair;
 
 /// Appends the pairs of one range, class by class, without the padding at its end.
 void take_range(ListState& state, const PairList& list, const PairRange& range, std::uint32_t ghost) {
   std::size_t begin = range.first;
   for (std::size_t c = 0; c < gap_classes; ++c) {
     std::size_t end = range.end[c];
-    while (end > begin && list.data()[end - 1].first >= ghost) --end;
+    while (end > begin && list.data()[end - 1].first() >= ghost) --end;
     state.class_pairs.push_back(static_cast<std::uint32_t>(end - begin));
     for (std::size_t k = begin; k < end; ++k) {
-      state.pairs.push_back(list.data()[k].first);
-      state.pairs.push_back(list.data()[k].second);
+      state.pairs.push_back(list.data()[k].first());
+      state.pairs.push_back(list.data()[k].second());
     }
     begin = range.end[c];
   }
@@ -76,10 +73,10 @@ PairRange put_range(Readers& from, Segment& segment, PairList& list, std::uint32
   for (std::size_t& class_end : range.end) {
     const std::size_t most = first < last ? from.pairs.left() / 2 : 0;
     const std::uint32_t count = from.class_pairs.next(0, static_cast<std::uint32_t>(most));
-    CandidatePair* const to = list.room_for(count);
+    RowPair* const to = list.room_for(count);
     for (std::uint32_t k = 0; k < count; ++k) {
-      to[k].first = from.pairs.next(first, last - 1);
-      to[k].second = from.pairs.next(to[k].first + 1, end - 1);
+      const std::uint32_t row = from.pairs.next(first, last - 1);
+      to[k] = RowPair::of(row, from.pairs.next(row + 1, end - 1));
     }
     list.set_end(to + count);
     segment.candidates += count;

@@ -53,6 +53,15 @@ void check_granules(const RunState& s, const Plan& plan) {
   const std::size_t predicted = plan.scene.time.integrator == Integrator::verlet ? 3 * count : 0;
   demand_length("granules/predicted_velocity", s.predicted_velocity.size(), predicted);
   demand_length("granules/predicted_surface_spin", s.predicted_surface_spin.size(), predicted);
+  const std::size_t ledger = plan.scene.output.energy ? 3 * count : 0;
+  demand_length("granules/velocity_rate", s.velocity_rate.size(), ledger);
+  demand_length("granules/surface_spin_rate", s.surface_spin_rate.size(), ledger);
+  demand_length("granules/damping_granule", s.damping_granule.size(), ledger);
+  demand_length("granules/damping_wall", s.damping_wall.size(), ledger);
+  demand_length("granules/friction_granule", s.friction_granule.size(), ledger);
+  demand_length("granules/friction_granule_turn", s.friction_granule_turn.size(), ledger);
+  demand_length("granules/friction_wall", s.friction_wall.size(), ledger);
+  demand_length("granules/friction_wall_turn", s.friction_wall_turn.size(), ledger);
   const bool coulomb = plan.scene.contact.friction == FrictionLaw::coulomb;
   demand_length("granules/friction_share", s.friction_share.size(), coulomb ? count : 0);
   for (const double share : s.friction_share)

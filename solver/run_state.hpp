@@ -50,6 +50,10 @@ struct RunState {
   std::vector<double> surface_spin;
   std::vector<double> predicted_velocity;
   std::vector<double> predicted_surface_spin;
+  std::vector<double> velocity_rate;
+  std::vector<double> surface_spin_rate;
+  std::vector<double> damping_granule, damping_wall;
+  std::vector<double> friction_granule, friction_granule_turn, friction_wall, friction_wall_turn;
   std::vector<double> friction_share;
 
   ListState list;
@@ -147,6 +151,15 @@ template <class State, class Field> void visit_fields(State& s, Field&& field) {
   field(FieldInfo{"granules/predicted_velocity", "m/s", "verlet: at t_n, as forces see it", 3}, s.predicted_velocity);
   field(FieldInfo{"granules/predicted_surface_spin", "m/s", "verlet: at t_n, as forces see it", 3},
         s.predicted_surface_spin);
+  field(FieldInfo{"granules/velocity_rate", "m/s^2", "ledger: from t_(n-3/2) to t_(n-1/2)", 3}, s.velocity_rate);
+  field(FieldInfo{"granules/surface_spin_rate", "m/s^2", "ledger: likewise", 3}, s.surface_spin_rate);
+  field(FieldInfo{"granules/damping_granule", "N", "ledger: sum of such forces at t_(n-1)", 3}, s.damping_granule);
+  field(FieldInfo{"granules/damping_wall", "N", "ledger: likewise", 3}, s.damping_wall);
+  field(FieldInfo{"granules/friction_granule", "N", "ledger: likewise", 3}, s.friction_granule);
+  field(FieldInfo{"granules/friction_granule_turn", "N", "ledger: their torque over the radius", 3},
+        s.friction_granule_turn);
+  field(FieldInfo{"granules/friction_wall", "N", "ledger: sum of such forces at t_(n-1)", 3}, s.friction_wall);
+  field(FieldInfo{"granules/friction_wall_turn", "N", "ledger: their torque over the radius", 3}, s.friction_wall_turn);
   field(FieldInfo{"granules/friction_share", "1", "coulomb: of a slip, that one contact may take in a step"},
         s.friction_share);
 

@@ -6,7 +6,7 @@ namespace grandamp {
 
 namespace {
 
-using kernels::CandidatePair;
+using kernels::RowPair;
 using kernels::SpringRow;
 
 /// Steps as the rows mark them. Rows are wiped at every rebuild, so that a number cannot come round again.
@@ -23,9 +23,9 @@ void take(std::vector<LoadedSpring>& to, const SpringMemory::Rows& rows, const P
           const Granules& granules, std::uint32_t mark) {
   const std::size_t count = std::min(pairs.count(), rows.row.size());
   for (std::size_t k = 0; k < count; ++k) {
-    const CandidatePair pair = pairs.data()[k];
-    if (rows.touched[k] != mark || pair.first >= granules.count()) continue;
-    const std::uint32_t first = granules.id[pair.first], second = granules.id[pair.second];
+    const RowPair pair = pairs.data()[k];
+    if (rows.touched[k] != mark || pair.first() >= granules.count()) continue;
+    const std::uint32_t first = granules.id[pair.first()], second = granules.id[pair.second()];
     to.push_back(first < second ? LoadedSpring{first, second, rows.row[k]}
                                 : LoadedSpring{second, first, turned_round(rows.row[k])});
   }
@@ -57,9 +57,9 @@ void give(SpringMemory::Rows& rows, const PairList& pairs, const Granules& granu
           std::uint32_t mark) {
   rows.reset(pairs.count());
   for (std::size_t k = 0; k < pairs.count(); ++k) {
-    const CandidatePair pair = pairs.data()[k];
-    if (pair.first >= granules.count()) continue;
-    const std::uint32_t first = granules.id[pair.first], second = granules.id[pair.second];
+    const RowPair pair = pairs.data()[k];
+    if (pair.first() >= granules.count()) continue;
+    const std::uint32_t first = granules.id[pair.first()], second = granules.id[pair.second()];
     const LoadedSpring* spring = first < second ? all.find(first, second) : all.find(second, first);
     if (spring == nullptr) continue;
     rows.row[k] = first < second ? spring->row : turned_round(spring->row);

@@ -106,6 +106,8 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_co
   auto position = copied(granules_.position);
   auto motion = copied(granules_.motion);
   auto predicted = copied(granules_.predicted);
+  auto acceleration = copied(granules_.acceleration);
+  ForcesByKind before = granules_.kinds_before.copy();
   const EnclosureState enclosure = enclosure_;
   const ListAge age = age_;
   const GuardStatistics guards = guards_;
@@ -130,6 +132,8 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_co
   granules_.position = std::move(position);
   granules_.motion = std::move(motion);
   granules_.predicted = std::move(predicted);
+  granules_.acceleration = std::move(acceleration);
+  granules_.kinds_before.swap(before);
   enclosure_ = enclosure;
   age_ = age;
   guards_ = guards;
@@ -155,6 +159,7 @@ StepRecord Stepper::advance(bool energies) {
   for (std::size_t k = 0; k < 3; ++k) kick[k] = kick[k] * part_ - enclosure.velocity_change[k];
   boundary_forces(kernels);
   sweep(kernels, kick, enclosure.mean_velocity);
+  granules_.age_kinds();
   StepRecord record = collect(reaction, enclosure);
   record.until = ledger_at(record);
   return record;

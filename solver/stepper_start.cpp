@@ -235,11 +235,17 @@ void Stepper::take_half_step_back() {
   for (std::uint32_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       MotionRow &before = motion[i], &after = granules_.motion[i];
-      before.velocity[k] -= 0.5 * (after.velocity[k] - before.velocity[k]) + frame_change[k];
-      before.surface_spin[k] -= 0.5 * (after.surface_spin[k] - before.surface_spin[k]);
+      const double gained = 0.5 * (after.velocity[k] - before.velocity[k]) + frame_change[k];
+      const double spun = 0.5 * (after.surface_spin[k] - before.surface_spin[k]);
+      before.velocity[k] -= gained;
+      before.surface_spin[k] -= spun;
+      if (granules_.acceleration.size() == 0) continue;
+      granules_.acceleration[i].velocity[k] = gained / (0.5 * time_step_);
+      granules_.acceleration[i].surface_spin[k] = spun / (0.5 * time_step_);
     }
   granules_.motion = std::move(motion);
   granules_.predicted = std::move(predicted);
+  granules_.kinds.clear(0, count);
   for (const auto& result : results_) {
     guards_.max_overlap = std::max({guards_.max_overlap, result.pairs.max_overlap, result.walls.max_overlap});
     guards_.max_closing = std::max({guards_.max_closing, result.pairs.max_closing, result.walls.max_closing});

@@ -7,11 +7,15 @@
 
 namespace grandamp {
 
+using kernels::AccelerationRow;
+using kernels::DampingRow;
+using kernels::ForceRow;
 using kernels::MotionRow;
 
 namespace {
 
-std::vector<double> columns_of(const RowArray<MotionRow>& rows, std::uint32_t count, double (MotionRow::*part)[3]) {
+template <class Row>
+std::vector<double> columns_of(const RowArray<Row>& rows, std::uint32_t count, double (Row::*part)[3]) {
   std::vector<double> values;
   if (rows.size() == 0) return values;
   values.reserve(3 * std::size_t{count});
@@ -90,6 +94,15 @@ void Stepper::save(RunState& s) const {
   s.surface_spin = columns_of(granules_.motion, count, &MotionRow::surface_spin);
   s.predicted_velocity = columns_of(granules_.predicted, count, &MotionRow::velocity);
   s.predicted_surface_spin = columns_of(granules_.predicted, count, &MotionRow::surface_spin);
+  s.velocity_rate = columns_of(granules_.acceleration, count, &AccelerationRow::velocity);
+  s.surface_spin_rate = columns_of(granules_.acceleration, count, &AccelerationRow::surface_spin);
+  const ForcesByKind& kinds = granules_.kinds_before;
+  s.damping_granule = columns_of(kinds.damping_granule, count, &DampingRow::force);
+  s.damping_wall = columns_of(kinds.damping_wall, count, &DampingRow::force);
+  s.friction_granule = columns_of(kinds.friction_granule, count, &ForceRow::force);
+  s.friction_granule_turn = columns_of(kinds.friction_granule, count, &ForceRow::turn);
+  s.friction_wall = columns_of(kinds.friction_wall, count, &ForceRow::force);
+  s.friction_wall_turn = columns_of(kinds.friction_wall, count, &ForceRow::turn);
   s.friction_share.clear();
   if (contact_effects_.counts())
     for (std::uint32_t i = 0; i < count; ++i) s.friction_share.push_back(granules_.force[i].friction_share);
@@ -181,6 +194,17 @@ void Stepper::restore_granules(const RunState& s) {
     row.inverse_mass = s.inverse_mass[i];
     row.inverse_radius = 1.0 / s.radius[i];
     if (contact_effects_.counts()) granules_.force[i].friction_share = s.friction_share[i];
+    if (granules_.acceleration.size() > 0) {
+      three(s.velocity_rate, i, granules_.acceleration[i].velocity);
+      three(s.surface_spin_rate, i, granules_.acceleration[i].surface_spin);
+      ForcesByKind& kinds = granules_.kinds_before;
+      three(s.damping_granule, i, kinds.damping_granule[i].force);
+      three(s.damping_wall, i, kinds.damping_wall[i].force);
+      three(s.friction_granule, i, kinds.friction_granule[i].force);
+      three(s.friction_granule_turn, i, kinds.friction_granule[i].turn);
+      three(s.friction_wall, i, kinds.friction_wall[i].force);
+      three(s.friction_wall_turn, i, kinds.friction_wall[i].turn);
+    }
     if (granules_.predicted.size() == 0) continue;
     granules_.predicted[i] = row;
     three(s.predicted_velocity, i, granules_.predicted[i].velocity);

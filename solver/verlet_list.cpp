@@ -7,8 +7,8 @@ namespace grandamp {
 
 namespace {
 
-using kernels::CandidatePair;
 using kernels::IndexRange;
+using kernels::RowPair;
 
 /// Below this many granules one segment is faster than any division of the work.
 constexpr std::uint32_t single_segment = 20000;
@@ -42,7 +42,7 @@ struct Coordinates {
 
 /// Sorts the pairs from `first` to the list's end by gap, and pads. Returns the classes' ends.
 PairRange classed(PairList& list, std::size_t first, const VerletList::Search& search, const Granules& granules,
-                  std::vector<CandidatePair>& scratch) {
+                  std::vector<RowPair>& scratch) {
   PairRange range;
   range.first = first;
   const std::size_t count = list.count() - first;
@@ -56,7 +56,7 @@ PairRange classed(PairList& list, std::size_t first, const VerletList::Search& s
     a.count = to - from;
     a.reach = share * search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0);
     // Vectors are stored whole: what stands behind the part must not be lost.
-    std::array<CandidatePair, kernels::list_padding> behind;
+    std::array<RowPair, kernels::list_padding> behind;
     std::copy_n(list.data() + to, behind.size(), behind.begin());
     const std::size_t end = from + search.split(a);
     std::copy_n(behind.begin(), behind.size(), list.data() + to);
@@ -69,19 +69,25 @@ PairRange classed(PairList& list, std::size_t first, const VerletList::Search& s
   return range;
 }
 
-void list_walls(Segment& segment, const Granules& granules, const std::vector<Wall>& walls, double skin) {
+/// The segment's granules near each wall. `places(wall, look)` calls look(first, last) for the rows where they can be,
+/// in rising order.
+template <class Places>
+void list_walls(Segment& segment, const Granules& granules, const std::vector<Wall>& walls, double skin,
+                const Places& places) {
   segment.walls.resize(walls.size());
   segment.outside.clear();
   std::size_t longest = 0;
   for (std::size_t w = 0; w < walls.size(); ++w) {
     WallList& list = segment.walls[w];
     list.granules.clear();
-    // Half the skin: the wall itself does not move in the enclosure's frame.
-    for (std::uint32_t i = segment.first; i < segment.last; ++i) {
-      const double inside = distance_inside(walls[w], granules.position[i]);
-      if (!(inside >= 0.0)) segment.outside.push_back(i);
-      if (inside < granules.position[i].radius + 0.5 * skin) list.granules.push_back(i);
-    }
+    places(walls[w], [&](std::uint32_t first, std::uint32_t last) {
+      for (std::uint32_t i = first; i < last; ++i) {
+        const double inside = distance_inside(walls[w], granules.position[i]);
+        if (!(inside >= 0.0)) segment.outside.push_back(i);
+        // Half the skin: the wall itself does not move in the enclosure's frame.
+        if (inside < granules.position[i].radius + 0.5 * skin) list.granules.push_back(i);
+      }
+    });
     list.count = list.granules.size();
     while (list.granules.size() % kernels::list_padding != 0) list.granules.push_back(granules.count());
     longest = std::max(longest, list.granules.size());
@@ -89,6 +95,28 @@ void list_walls(Segment& segment, const Granules& granules, const std::vector<Wa
   segment.touching_wall.resize(longest + kernels::list_padding);
   const std::size_t scratch = kernels::pair_chunk + kernels::contact_padding;
   if (segment.touching.size() < scratch) segment.touching.resize(scratch);
+}
+
+/// Calls look(first, last) for the rows in layers [first_layer, last_layer) that can be near the wall: at a plane those
+/// of the cells along it, which are longer than a granule's diameter and the skin.
+template <class Look>
+void look_along(const Wall& wall, const CellGrid& grid, int first_layer, int last_layer, const Look& look) {
+  const GridShape& shape = grid.shape();
+  std::size_t across = 0;
+  while (across < 3 && wall.surface.normal[shape.axis[across]] == 0.0) ++across;
+  if (wall.side || across == 3) return look(grid.layer_start(first_layer), grid.layer_start(last_layer));
+  const int edge = wall.surface.normal[shape.axis[across]] > 0.0 ? shape.cells[across] - 1 : 0;
+  const auto row = [&](int first, int last, int middle, int slow) {
+    look(grid.cell_start(first, middle, slow), grid.start()[grid.index(last, middle, slow) + 1]);
+  };
+  for (int slow = first_layer; slow < last_layer; ++slow) {
+    if (across == 2) {
+      if (slow == edge) look(grid.layer_start(slow), grid.layer_start(slow + 1));
+    } else if (across == 1)
+      row(0, shape.cells[0] - 1, edge, slow);
+    else
+      for (int middle = 0; middle < shape.cells[1]; ++middle) row(edge, edge, middle, slow);
+  }
 }
 
 } // namespace
@@ -100,7 +128,7 @@ std::size_t PairRange::to_test(double share) const {
   return std::min(padded * kernels::list_padding, end[gap_classes - 1] - first);
 }
 
-CandidatePair* PairList::room_for(std::size_t more) {
+RowPair* PairList::room_for(std::size_t more) {
   const std::size_t needed = count_ + more;
   if (needed > pairs_.size()) pairs_.grow(needed + needed / 2 + 64, count_);
   return pairs_.data() + count_;
@@ -108,8 +136,8 @@ CandidatePair* PairList::room_for(std::size_t more) {
 
 std::size_t PairList::pad(std::uint32_t ghost) {
   std::size_t added = 0;
-  CandidatePair* end = room_for(kernels::list_padding);
-  for (; (count_ + added) % kernels::list_padding != 0; ++added) end[added] = {ghost, ghost + 1};
+  RowPair* end = room_for(kernels::list_padding);
+  for (; (count_ + added) % kernels::list_padding != 0; ++added) end[added] = RowPair::of(ghost, ghost + 1);
   count_ += added;
   return added;
 }
@@ -167,7 +195,7 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
   const auto append = [&](PairList& list, IndexRange own, std::uint32_t own_end, const IndexRange* ranges, int count) {
     std::size_t tests = (own_end > own.first ? own_end - own.first : 0) + kernels::list_padding;
     for (int k = 0; k < count; ++k) tests += ranges[k].last - ranges[k].first + kernels::list_padding;
-    CandidatePair* to = list.room_for(tests * (own.last - own.first) + kernels::list_padding);
+    RowPair* to = list.room_for(tests * (own.last - own.first) + kernels::list_padding);
     list.set_end(search.kernel(arguments, own, own_end, ranges, count, to));
   };
 
@@ -231,7 +259,9 @@ void VerletList::search_all(Granules& granules, const std::vector<Wall>& walls, 
   });
   team.each(segments_.size(), [&](std::size_t s) {
     search_segment(segments_[s], segment_layers_[s], segment_layers_[s + 1], arguments, search, granules);
-    list_walls(segments_[s], granules, walls, search.skin);
+    list_walls(segments_[s], granules, walls, search.skin, [&](const Wall& wall, const auto& look) {
+      look_along(wall, grid_, segment_layers_[s], segment_layers_[s + 1], look);
+    });
   });
   team.each(segments_.size(), [&](std::size_t s) { granules.clear_forces(segments_[s].first, segments_[s].last); });
 }
@@ -261,7 +291,7 @@ void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall
     block.last = std::min(first + kernels::block_granules, segment.last);
     const std::size_t first_pair = segment.inner.count();
     for (std::uint32_t i = block.first; i < block.last; ++i) {
-      CandidatePair* to = segment.inner.room_for(segment.last - i + 2 * kernels::list_padding);
+      RowPair* to = segment.inner.room_for(segment.last - i + 2 * kernels::list_padding);
       segment.inner.set_end(search.kernel(arguments, {i, i + 1}, segment.last, nullptr, 0, to));
     }
     segment.candidates += segment.inner.count() - first_pair;
@@ -269,7 +299,8 @@ void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall
     block.front = segment.last;
     segment.blocks.push_back(block);
   }
-  list_walls(segment, granules, walls, search.skin);
+  list_walls(segment, granules, walls, search.skin,
+             [&](const Wall&, const auto& look) { look(segment.first, segment.last); });
   granules.clear_forces(0, granules.count());
 }
 

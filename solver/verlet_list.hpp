@@ -19,16 +19,16 @@ class PairList {
 public:
   void clear() noexcept { count_ = 0; }
   std::size_t count() const noexcept { return count_; }
-  kernels::CandidatePair* data() noexcept { return pairs_.data(); }
-  const kernels::CandidatePair* data() const noexcept { return pairs_.data(); }
+  kernels::RowPair* data() noexcept { return pairs_.data(); }
+  const kernels::RowPair* data() const noexcept { return pairs_.data(); }
   /// Room for `more` pairs at the end; where they go.
-  kernels::CandidatePair* room_for(std::size_t more);
-  void set_end(const kernels::CandidatePair* end) noexcept { count_ = static_cast<std::size_t>(end - pairs_.data()); }
+  kernels::RowPair* room_for(std::size_t more);
+  void set_end(const kernels::RowPair* end) noexcept { count_ = static_cast<std::size_t>(end - pairs_.data()); }
   /// Fills up to a multiple of list_padding; returns how many pairs were added.
   std::size_t pad(std::uint32_t ghost);
 
 private:
-  RowArray<kernels::CandidatePair> pairs_;
+  RowArray<kernels::RowPair> pairs_;
   std::size_t count_ = 0;
 };
 
@@ -64,10 +64,10 @@ struct Segment {
   PairList inner;
   PairList boundary; ///< pairs whose second granule is in the next segment
   std::vector<WallList> walls;
-  std::vector<std::uint32_t> outside;            ///< granules whose centre is beyond a wall, or not finite
-  std::size_t candidates = 0;                    ///< without padding
-  std::vector<kernels::PairOffsets> touching;    ///< scratch of the sweep
-  std::vector<kernels::CandidatePair> far_pairs; ///< scratch of the build
+  std::vector<std::uint32_t> outside;      ///< granules whose centre is beyond a wall, or not finite
+  std::size_t candidates = 0;              ///< without padding
+  std::vector<kernels::RowPair> touching;  ///< scratch of the sweep
+  std::vector<kernels::RowPair> far_pairs; ///< scratch of the build
   std::vector<std::uint32_t> touching_wall;
 };
 

@@ -134,9 +134,9 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
         CAPTURE(limit);
         Bed bed = make_bed(effects, 7);
         const auto ghost = static_cast<std::uint32_t>(bed.count());
-        std::vector<CandidatePair> pairs;
+        std::vector<RowPair> pairs;
         for (std::uint32_t i = 0; i < ghost; ++i)
-          for (std::uint32_t j = i + 1; j < ghost; ++j) pairs.push_back({i, j});
+          for (std::uint32_t j = i + 1; j < ghost; ++j) pairs.push_back(RowPair::of(i, j));
         std::shuffle(pairs.begin(), pairs.end(), std::mt19937_64(3));
         pairs.resize(std::min(pairs.size(), limit));
 
@@ -147,35 +147,35 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
         if (otherwise) arrive_otherwise(bed, 5);
         std::vector<reference::Contact> contacts;
         for (std::size_t entry = 0; entry < pairs.size(); ++entry) {
-          const CandidatePair& pair = pairs[entry];
-          const auto& a = bed.granules[pair.first];
-          const auto& b = bed.granules[pair.second];
-          const auto& law = bed.law(pair.first, pair.second, effects.variety);
+          const RowPair& pair = pairs[entry];
+          const auto& a = bed.granules[pair.first()];
+          const auto& b = bed.granules[pair.second()];
+          const auto& law = bed.law(pair.first(), pair.second(), effects.variety);
           const double reduced = a.radius * b.radius / (a.radius + b.radius);
           springs.load(entry, 3.0e-5, reduced, random);
           const reference::Arrival arrival =
-              otherwise ? arrival_of(bed, pair.first, pair.second) : reference::Arrival{};
+              otherwise ? arrival_of(bed, pair.first(), pair.second()) : reference::Arrival{};
           const auto contact =
               reference::pair_contact(a, b, law, step, springs.before[entry], otherwise ? &arrival : nullptr);
           contacts.push_back(contact);
           if (!contact.touching) continue;
           const double friction_size = effects.precision == Precision::mixed ? size_of_friction(contact, a, b) : 0.0;
-          add_contact(expected, contact, pair.first, a.radius, friction_size);
+          add_contact(expected, contact, pair.first(), a.radius, friction_size);
           for (auto* sums : {&expected.force, &expected.turn, &expected.rubbing})
-            (*sums)[pair.second].size += friction_size;
-          ++expected.touching[pair.second];
-          expected.force[pair.second].add(-1.0, contact.force_i);
-          expected.turn[pair.second].add(1.0 / b.radius, contact.torque_j);
-          expected.damping[pair.second].add(contact.damping, contact.normal);
-          expected.rubbing[pair.second].add(-1.0, contact.friction);
+            (*sums)[pair.second()].size += friction_size;
+          ++expected.touching[pair.second()];
+          expected.force[pair.second()].add(-1.0, contact.force_i);
+          expected.turn[pair.second()].add(1.0 / b.radius, contact.torque_j);
+          expected.damping[pair.second()].add(contact.damping, contact.normal);
+          expected.rubbing[pair.second()].add(-1.0, contact.friction);
           expected.max_overlap = std::max(expected.max_overlap, contact.overlap / std::min(a.radius, b.radius));
           expected.max_closing = std::max(expected.max_closing, contact.approach);
           ++expected.contacts;
         }
         if (limit == 100000) REQUIRE(expected.contacts > 40);
 
-        while (pairs.size() % list_padding) pairs.push_back({ghost, ghost + 1});
-        std::vector<PairOffsets> scratch(pair_chunk + contact_padding);
+        while (pairs.size() % list_padding) pairs.push_back(RowPair::of(ghost, ghost + 1));
+        std::vector<RowPair> scratch(pair_chunk + contact_padding);
         PairArguments arguments;
         arguments.granules = bed.arrays();
         arguments.pairs = pairs.data();
@@ -194,8 +194,8 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
         check_rows(bed, expected, effects, false);
         check_result(result, expected, effects);
         for (std::size_t entry = 0; entry < contacts.size() && effects.remembers(); ++entry) {
-          const auto& a = bed.granules[pairs[entry].first];
-          const auto& b = bed.granules[pairs[entry].second];
+          const auto& a = bed.granules[pairs[entry].first()];
+          const auto& b = bed.granules[pairs[entry].second()];
           if (contacts[entry].touching)
             check_memory(springs, entry, contacts[entry], a.radius * b.radius / (a.radius + b.radius));
           else
@@ -230,9 +230,9 @@ TEST_CASE("mixed precision keeps overlaps that float coordinates could not tell"
         const auto contact = reference::pair_contact(bed.granules[0], bed.granules[1], bed.laws.front(), step);
         REQUIRE(contact.touching);
         const auto ghost = static_cast<std::uint32_t>(bed.count());
-        std::vector<CandidatePair> pairs(list_padding, {ghost, ghost + 1});
-        std::vector<PairOffsets> scratch(pair_chunk + contact_padding);
-        pairs[3] = {0, 1};
+        std::vector<RowPair> pairs(list_padding, RowPair::of(ghost, ghost + 1));
+        std::vector<RowPair> scratch(pair_chunk + contact_padding);
+        pairs[3] = RowPair::of(0, 1);
         PairArguments arguments;
         arguments.granules = bed.arrays();
         arguments.pairs = pairs.data();
@@ -272,18 +272,18 @@ TEST_CASE("what a set of effects leaves out is not even read by its pair kernels
       CAPTURE(which);
       Bed bed = make_bed(effects, 7);
       const auto ghost = static_cast<std::uint32_t>(bed.count());
-      std::vector<CandidatePair> pairs;
-      std::vector<PairOffsets> scratch(pair_chunk + contact_padding);
+      std::vector<RowPair> pairs;
+      std::vector<RowPair> scratch(pair_chunk + contact_padding);
       for (std::uint32_t i = 0; i < ghost; ++i)
-        for (std::uint32_t j = i + 1; j < ghost; ++j) pairs.push_back({i, j});
-      while (pairs.size() % list_padding) pairs.push_back({ghost, ghost + 1});
+        for (std::uint32_t j = i + 1; j < ghost; ++j) pairs.push_back(RowPair::of(i, j));
+      while (pairs.size() % list_padding) pairs.push_back(RowPair::of(ghost, ghost + 1));
       if (!effects.rotates())
         for (std::size_t i = 0; i < bed.motion.size(); ++i)
           for (int k = 0; k < 3; ++k) bed.motion[i].surface_spin[k] = bed.force[i].turn[k] = nan;
       PairArguments arguments;
       arguments.granules = bed.arrays();
-      arguments.granules.damping_granule = nullptr;
-      arguments.granules.friction_granule = nullptr;
+      arguments.granules.kinds.damping_granule = nullptr;
+      arguments.granules.kinds.friction_granule = nullptr;
       arguments.pairs = pairs.data();
       arguments.count = pairs.size();
       arguments.touching = scratch.data();
@@ -312,23 +312,23 @@ TEST_CASE("pair kernels: lists longer than a chunk, and larger figures from befo
     const ContactEffects effects{kernels::Damping::tsuji, Friction::coulomb, Variety::alike, Observation::energies};
     Bed bed = make_bed(effects, 7);
     const auto ghost = static_cast<std::uint32_t>(bed.count());
-    std::vector<CandidatePair> once;
+    std::vector<RowPair> once;
     for (std::uint32_t i = 0; i < ghost; ++i)
-      for (std::uint32_t j = i + 1; j < ghost; ++j) once.push_back({i, j});
-    std::vector<CandidatePair> pairs;
+      for (std::uint32_t j = i + 1; j < ghost; ++j) once.push_back(RowPair::of(i, j));
+    std::vector<RowPair> pairs;
     const int times = 10;
     for (int n = 0; n < times; ++n) pairs.insert(pairs.end(), once.begin(), once.end());
-    while (pairs.size() % list_padding) pairs.push_back({ghost, ghost + 1});
+    while (pairs.size() % list_padding) pairs.push_back(RowPair::of(ghost, ghost + 1));
     REQUIRE(pairs.size() > 2 * pair_chunk);
     std::int64_t contacts = 0;
     double elastic = 0.0;
-    for (const CandidatePair& pair : once) {
+    for (const RowPair& pair : once) {
       const auto contact =
-          reference::pair_contact(bed.granules[pair.first], bed.granules[pair.second], bed.laws.front(), step);
+          reference::pair_contact(bed.granules[pair.first()], bed.granules[pair.second()], bed.laws.front(), step);
       contacts += contact.touching;
       elastic += contact.elastic_energy;
     }
-    std::vector<PairOffsets> scratch(pair_chunk + contact_padding);
+    std::vector<RowPair> scratch(pair_chunk + contact_padding);
     PairArguments arguments;
     arguments.granules = bed.arrays();
     arguments.pairs = pairs.data();

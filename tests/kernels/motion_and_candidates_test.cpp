@@ -48,6 +48,15 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
               fill(bed.damping_wall, 0.4, false);
               fill(bed.friction_granule, 0.5, rotates);
               fill(bed.friction_wall, 0.6, rotates);
+              fill(bed.damping_granule_before, 0.35, false);
+              fill(bed.damping_wall_before, 0.45, false);
+              fill(bed.friction_granule_before, 0.55, rotates);
+              fill(bed.friction_wall_before, 0.65, rotates);
+              for (AccelerationRow& row : bed.acceleration)
+                for (int k = 0; k < 3; ++k) {
+                  row.velocity[k] = random(-1.0e4, 1.0e4);
+                  row.surface_spin[k] = random(-1.0e4, 1.0e4);
+                }
 
               const reference::Vector gravity = accelerated ? reference::Vector{1.0, -3.0, -9.81} : reference::Vector{};
               const reference::Vector frame_kick =
@@ -67,12 +76,19 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                   mean.velocity[k] = 0.5 * (before.velocity[k] + g.velocity[k]);
                   mean.spin[k] = 0.5 * (before.spin[k] + g.spin[k]);
                   expected.mass_moment[k] += g.mass * before.position[k];
-                  expected.normal_granule -= step * bed.damping_granule[i].force[k] * mean.velocity[k];
-                  expected.normal_wall -= step * bed.damping_wall[i].force[k] * mean.velocity[k];
-                  expected.friction_granule -= step * (bed.friction_granule[i].force[k] * mean.velocity[k] +
-                                                       bed.friction_granule[i].turn[k] * g.radius * mean.spin[k]);
-                  expected.friction_wall -= step * (bed.friction_wall[i].force[k] * mean.velocity[k] +
-                                                    bed.friction_wall[i].turn[k] * g.radius * mean.spin[k]);
+                  const double gained = g.velocity[k] - before.velocity[k];
+                  const double spun = g.radius * (g.spin[k] - before.spin[k]);
+                  const double v = mean.velocity[k] + step * bed.acceleration[i].velocity[k] / 12.0;
+                  const double s = g.radius * mean.spin[k] + step * bed.acceleration[i].surface_spin[k] / 12.0;
+                  const auto work = [&](const auto& now, const auto& then) {
+                    double sum = now.force[k] * v - then.force[k] * gained / 12.0;
+                    if constexpr (requires { now.turn; }) sum += now.turn[k] * s - then.turn[k] * spun / 12.0;
+                    return step * sum;
+                  };
+                  expected.normal_granule -= work(bed.damping_granule[i], bed.damping_granule_before[i]);
+                  expected.normal_wall -= work(bed.damping_wall[i], bed.damping_wall_before[i]);
+                  expected.friction_granule -= work(bed.friction_granule[i], bed.friction_granule_before[i]);
+                  expected.friction_wall -= work(bed.friction_wall[i], bed.friction_wall_before[i]);
                 }
                 double square = 0.0;
                 for (std::size_t k = 0; k < 3; ++k) square += g.velocity[k] * g.velocity[k];
@@ -115,10 +131,21 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                   }
                   left += std::abs(bed.force[i].force[k]) + std::abs(bed.force[i].turn[k]);
                   if (effects.ledger())
-                    left += std::abs(bed.damping_granule[i].force[k]) + std::abs(bed.damping_wall[i].force[k]) +
-                            std::abs(bed.friction_granule[i].force[k]) + std::abs(bed.friction_granule[i].turn[k]) +
-                            std::abs(bed.friction_wall[i].force[k]) + std::abs(bed.friction_wall[i].turn[k]);
+                    left += std::abs(bed.damping_granule_before[i].force[k]) +
+                            std::abs(bed.damping_wall_before[i].force[k]) +
+                            std::abs(bed.friction_granule_before[i].force[k]) +
+                            std::abs(bed.friction_granule_before[i].turn[k]) +
+                            std::abs(bed.friction_wall_before[i].force[k]) +
+                            std::abs(bed.friction_wall_before[i].turn[k]);
                 }
+                if (effects.ledger())
+                  for (std::size_t k = 0; k < 3; ++k) {
+                    const double gained = moved[i].velocity[k] - before.velocity[k];
+                    const double spun = before.radius * (moved[i].spin[k] - before.spin[k]);
+                    CHECK(bed.acceleration[i].velocity[k] == doctest::Approx(gained / step).epsilon(1.0e-9));
+                    if (rotates)
+                      CHECK(bed.acceleration[i].surface_spin[k] == doctest::Approx(spun / step).epsilon(1.0e-9));
+                  }
                 if (counts) {
                   CHECK(bed.force[i].touching == 0.0);
                   CHECK(bed.force[i].friction_share == 1.0 / (1.0 + std::max(untouched.force[i].touching, 1.0)));
@@ -202,10 +229,10 @@ TEST_CASE("candidate kernels: every instruction set finds exactly the pairs with
         arguments.z = z.data();
         arguments.radius = alike ? nullptr : radius.data();
         arguments.reach = alike ? 2.0 * common + skin : skin;
-        std::vector<CandidatePair> room(count * count + list_padding);
-        const CandidatePair* end = candidate_kernel_for(machine, alike)(arguments, own, own_end, ranges.data(),
-                                                                        static_cast<int>(ranges.size()), room.data());
-        for (const CandidatePair* pair = room.data(); pair != end; ++pair) found.insert({pair->first, pair->second});
+        std::vector<RowPair> room(count * count + list_padding);
+        const RowPair* end = candidate_kernel_for(machine, alike)(arguments, own, own_end, ranges.data(),
+                                                                  static_cast<int>(ranges.size()), room.data());
+        for (const RowPair* pair = room.data(); pair != end; ++pair) found.insert({pair->first(), pair->second()});
         CHECK(found == expected);
       }
 }

@@ -59,8 +59,9 @@ struct Bed {
   std::vector<reference::Granule> granules;
   std::vector<PositionRow> position;
   std::vector<MotionRow> motion;
-  std::vector<ForceRow> force, friction_granule, friction_wall;
-  std::vector<DampingRow> damping_granule, damping_wall;
+  std::vector<ForceRow> force, friction_granule, friction_wall, friction_granule_before, friction_wall_before;
+  std::vector<DampingRow> damping_granule, damping_wall, damping_granule_before, damping_wall_before;
+  std::vector<AccelerationRow> acceleration;
   std::vector<std::uint8_t> population;
   std::size_t populations = 3;
   std::vector<reference::Law> laws; ///< populations x populations; of walls: the first row
@@ -82,10 +83,10 @@ struct Bed {
     a.predicted = motion.data();
     a.force = force.data();
     a.population = population.data();
-    a.damping_granule = damping_granule.data();
-    a.damping_wall = damping_wall.data();
-    a.friction_granule = friction_granule.data();
-    a.friction_wall = friction_wall.data();
+    a.kinds = {damping_granule.data(), damping_wall.data(), friction_granule.data(), friction_wall.data()};
+    a.kinds_before = {damping_granule_before.data(), damping_wall_before.data(), friction_granule_before.data(),
+                      friction_wall_before.data()};
+    a.acceleration = acceleration.data();
     a.ghost = static_cast<std::uint32_t>(count());
     return a;
   }
@@ -176,6 +177,11 @@ inline Bed make_bed(ContactEffects effects, unsigned seed) {
   bed.friction_wall.resize(count + 2);
   bed.damping_granule.resize(count + 2);
   bed.damping_wall.resize(count + 2);
+  bed.acceleration.resize(count + 2);
+  bed.friction_granule_before.resize(count + 2);
+  bed.friction_wall_before.resize(count + 2);
+  bed.damping_granule_before.resize(count + 2);
+  bed.damping_wall_before.resize(count + 2);
   return bed;
 }
 

@@ -214,15 +214,19 @@ ReferenceRun::ReferenceRun(const Scene& scene, double step)
   const Forces at_start = forces(initial_, initial_, {}, true);
   state_.host = enclosure_.start(at_start.reaction);
   state_.granules = initial_;
+  state_.kick.resize(initial_.size());
+  state_.spin_kick.resize(initial_.size());
   for (std::size_t i = 0; i < initial_.size(); ++i) {
     Granule& one = state_.granules[i];
     add(one.velocity, enclosure_velocity - state_.host.velocity, enclosure_.direction());
     add(one.velocity, -0.5 * step_ / one.mass, at_start.force[i]);
     add(one.velocity, -0.5 * step_, scene_.gravity);
     add(one.spin, -0.5 * step_ / reference::moment_of_inertia(one), at_start.torque[i]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      state_.kick[i][k] = 2.0 * (initial_[i].velocity[k] - one.velocity[k]);
+      state_.spin_kick[i][k] = 2.0 * (initial_[i].spin[k] - one.spin[k]);
+    }
   }
-  state_.kick.resize(initial_.size());
-  state_.spin_kick.resize(initial_.size());
 }
 
 const Law& ReferenceRun::pair_law(std::size_t i, std::size_t j) const {
@@ -352,38 +356,51 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
   Vector frame_kick{};
   add(frame_kick, after.velocity - before.velocity, enclosure_.direction());
 
-  std::vector<Granule> mean = state.granules;
+  std::vector<Granule> mean = state.granules, velocity = state.granules, last = state.granules;
   for (std::size_t i = 0; i < count; ++i) {
     Granule& one = state.granules[i];
     const Granule old = one;
     reference::move(one, acting.force[i], acting.torque[i], scene_.gravity, frame_kick, step_);
     for (std::size_t k = 0; k < 3; ++k) {
-      state.kick[i][k] = one.velocity[k] - old.velocity[k];
-      state.spin_kick[i][k] = one.spin[k] - old.spin[k];
+      const double kick = one.velocity[k] - old.velocity[k], spin_kick = one.spin[k] - old.spin[k];
       mean[i].velocity[k] = 0.5 * (old.velocity[k] + one.velocity[k]);
       mean[i].spin[k] = 0.5 * (old.spin[k] + one.spin[k]);
+      velocity[i].velocity[k] = mean[i].velocity[k] + state.kick[i][k] / 12.0;
+      velocity[i].spin[k] = mean[i].spin[k] + state.spin_kick[i][k] / 12.0;
+      last[i].velocity[k] = -kick / 12.0;
+      last[i].spin[k] = -spin_kick / 12.0;
+      state.kick[i][k] = kick;
+      state.spin_kick[i][k] = spin_kick;
     }
   }
 
   for (Granule& one : state.granules) one.touching = 0;
   for (const Touch& touch : acting.touches) count_touch(touch, state.granules);
 
-  // The ledger, with the mean velocities; half of this step belongs to a sample at t_n.
+  // The ledger, with the velocities at t_n of the path that the positions lie on, v - (kick after - kick before) / 12:
+  // a contact's last part is known when the next step's kick is. Half of this step belongs to a sample at t_n.
   Ledger lost;
-  for (const Touch& touch : acting.touches) {
-    if (touch.j == touch.i) {
-      const auto power = reference::wall_dissipation(touch.contact, mean[touch.i], wall_law(touch.i));
-      lost.normal_wall += power.normal * step_;
-      lost.friction_wall += power.friction * step_;
-    } else {
-      const auto power =
-          reference::pair_dissipation(touch.contact, mean[touch.i], mean[touch.j], pair_law(touch.i, touch.j));
-      lost.normal_granule += power.normal * step_;
-      lost.friction_granule += power.friction * step_;
+  const auto lose = [&](const std::vector<Touch>& touches, const std::vector<Granule>& moving_at) {
+    for (const Touch& touch : touches) {
+      if (touch.j == touch.i) {
+        const auto power = reference::wall_dissipation(touch.contact, moving_at[touch.i], wall_law(touch.i));
+        lost.normal_wall += power.normal * step_;
+        lost.friction_wall += power.friction * step_;
+      } else {
+        const auto power = reference::pair_dissipation(touch.contact, moving_at[touch.i], moving_at[touch.j],
+                                                       pair_law(touch.i, touch.j));
+        lost.normal_granule += power.normal * step_;
+        lost.friction_granule += power.friction * step_;
+      }
     }
+  };
+  lose(acting.touches, velocity);
+  lose(state.touches_before, last);
+  for (const Touch& touch : acting.touches) {
     const double smaller = std::min(mean[touch.i].radius, mean[touch.j].radius);
     state.max_overlap = std::max(state.max_overlap, touch.contact.overlap / smaller);
   }
+  state.touches_before = acting.touches;
   const auto book = [&](double share, const ReferenceHost& host) {
     state.ledger.normal_granule += share * lost.normal_granule;
     state.ledger.normal_wall += share * lost.normal_wall;

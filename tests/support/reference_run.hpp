@@ -65,20 +65,21 @@ public:
 private:
   /// By granule, and partner or number of granules plus wall.
   using Springs = std::map<std::pair<std::size_t, std::size_t>, reference::Spring>;
-  struct State {
-    std::int64_t step_number = 0;
-    std::vector<reference::Granule> granules; ///< velocity relative to the enclosure, at t_(n-1/2)
-    std::vector<reference::Vector> kick;      ///< the last change of velocity, m/s (Verlet's prediction)
-    std::vector<reference::Vector> spin_kick;
-    ReferenceHost host; ///< at t_(n-1/2)
-    Ledger ledger;
-    double max_overlap = 0.0;
-    Springs springs; ///< of the contacts in touch at t_(n-1)
-  };
   struct Touch {
     std::size_t i, j; ///< j == i: a wall
     std::size_t wall; ///< which
     reference::Contact contact;
+  };
+  struct State {
+    std::int64_t step_number = 0;
+    std::vector<reference::Granule> granules; ///< velocity relative to the enclosure, at t_(n-1/2)
+    std::vector<reference::Vector> kick;      ///< the last change of velocity, m/s (Verlet's prediction, the ledger)
+    std::vector<reference::Vector> spin_kick;
+    ReferenceHost host; ///< at t_(n-1/2)
+    Ledger ledger;
+    double max_overlap = 0.0;
+    Springs springs;                   ///< of the contacts in touch at t_(n-1)
+    std::vector<Touch> touches_before; ///< those
   };
   struct Forces {
     std::vector<reference::Vector> force, torque;
