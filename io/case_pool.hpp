@@ -5,6 +5,8 @@
 // those of the program: nothing of them is written twice.
 #pragma once
 
+#include "io/case_options.hpp"
+
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -37,12 +39,6 @@ CaseState state_of(const CaseJob& job);
 void note_failure(const CaseJob& job, int exit_status, const std::string& error);
 /// The text of summary.json of a case that is done or was stopped by a guard; empty: none.
 std::string summary_of(const CaseJob& job);
-
-struct CaseProgress {
-  std::size_t done = 0, running = 0, all = 0; ///< of the jobs of this call
-  double seconds = 0.0;                       ///< since it began
-  double left = -1.0;                         ///< s; below 0: not known yet
-};
 
 struct CasePoolOptions {
   std::size_t at_a_time = 1;

@@ -101,23 +101,7 @@ std::string summary_of(const CaseJob& job) {
 void replace_shared_file(const fs::path& path, const std::string& text) {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
-  fs::path beside = path;
-  beside += fmt::format(".{}.{}.new", host.data(), getpid());
-  std::error_code error;
-  try {
-    TextFile file(beside);
-    file.write(text);
-    file.close();
-  } catch (...) {
-    fs::remove(beside, error);
-    throw;
-  }
-  fs::rename(beside, path, error);
-  if (error) {
-    const std::string reason = error.message();
-    fs::remove(beside, error);
-    throw FileError(path.string() + ": cannot replace the file: " + reason);
-  }
+  replace_file(path, text, fmt::format(".{}.{}.new", host.data(), getpid()));
 }
 
 } // namespace grandamp

@@ -2,34 +2,23 @@
 // results are partly chance.
 #pragma once
 
+#include "io/case_options.hpp"
 #include "io/scene_file.hpp"
 
-#include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 namespace grandamp {
 
-struct CaseProgress; // io/case_pool.hpp
-
-struct OptimiseOptions {
+struct OptimiseOptions : CaseOptions {
+  OptimiseOptions() { seeds = 3; }    // the same for all designs
   std::string number;                 ///< of the summary, dotted: "structure.rms_displacement"
   bool maximise = false;              ///< instead of minimise
   std::vector<std::string> over;      ///< KEY=A:B or KEY=A:B:log
   std::vector<std::string> overrides; ///< KEY=VALUE that the document has already: only to refuse what is free too
   bool keep_total_mass = false;
-  int seeds = 3;        ///< runs of each design, the same seeds for all
   int evaluations = 20; ///< designs at most
-  int threads = 0;      ///< in all; 0: what the process may use
-  std::string isa;      ///< empty: the best
-  double max_wall = 0.0;
-  bool force = false; ///< replace what the folder holds
-  std::function<void(const std::string&)> tell;
-  std::function<void(const std::string&)> warning;
-  std::function<void(const CaseProgress&)> progress;
-  std::function<bool()> stop_requested;
 };
 
 struct OptimiseResult {

@@ -45,25 +45,6 @@ bool any_of_kind(const std::vector<Figure>& figures, std::string_view kind) {
 
 } // namespace
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (c == '"')
-      result += "&quot;";
-    else if (c == '\'')
-      result += "&#39;";
-    else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t')
-      result += c;
-  }
-  return result;
-}
-
 std::string embedded(const Json& json) {
   // Text that is not UTF-8 must not cost the page.
   const std::string plain = json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -2,6 +2,7 @@
 // the numbers that they are drawn from. Internal to io.
 #pragma once
 
+#include "io/markup.hpp"
 #include "io/svg_plot.hpp"
 
 #include <nlohmann/json.hpp>
@@ -16,8 +17,6 @@
 
 namespace grandamp::report {
 
-/// Text as HTML shows it, in elements and in quoted attributes alike. Control characters are left out.
-std::string escaped(std::string_view text);
 /// JSON that cannot end the script element that it stands in.
 std::string embedded(const nlohmann::ordered_json& json);
 

@@ -2,11 +2,10 @@
 // error against time, step by step, and what to choose for an error asked for.
 #pragma once
 
+#include "io/case_options.hpp"
 #include "io/scene_file.hpp"
 
-#include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,17 +15,10 @@ namespace grandamp {
 inline constexpr const char* study_groups[] = {"steps", "integrator", "precision", "policy",
                                                "skin",  "friction",   "stiffness"};
 
-struct StudyOptions {
-  double error = 0.01;                          ///< that settings are recommended for
-  int seeds = 3;                                ///< runs of each setting, from seeds that follow the scene's
-  std::vector<std::string> vary;                ///< of study_groups; empty: all. "steps" is always part of it
-  int threads = 0;                              ///< in all; 0: what the process may use
-  std::string isa;                              ///< empty: the best
-  double max_wall = 0.0;                        ///< s after which it stops as if interrupted; 0: no end
-  bool force = false;                           ///< replace what the folder holds
-  std::function<void(const std::string&)> tell; ///< the plan, and what is left out
-  std::function<void(std::size_t done, std::size_t all, double seconds, double left)> progress;
-  std::function<bool()> stop_requested; ///< asked about every millisecond, by several threads
+struct StudyOptions : CaseOptions {
+  StudyOptions() { seeds = 3; }
+  double error = 0.01;           ///< that settings are recommended for
+  std::vector<std::string> vary; ///< of study_groups; empty: all. "steps" is always part of it
 };
 
 struct StudyResult {

@@ -246,6 +246,7 @@ private:
         replace_file(tasks_[k].file, text_of(done));
         cases_.done.push_back(std::move(done));
         seconds_done_ += seconds_of(tasks_[k]);
+        ++done_here_;
         tell();
       } catch (const StudyInterrupted&) {
         given_up_ = true;
@@ -263,7 +264,8 @@ private:
     if (!options_.progress) return;
     const double seconds = runner_.seconds();
     const double left = seconds_done_ > 0.0 ? seconds * (seconds_all_ - seconds_done_) / seconds_done_ : -1.0;
-    options_.progress(cases_.done.size(), cases_.planned, seconds, left);
+    const std::size_t begun = std::min(next_.load(), tasks_.size());
+    options_.progress({cases_.done.size(), begun - done_here_, cases_.planned, seconds, left});
   }
 
   CaseRunner& runner_;
@@ -274,6 +276,7 @@ private:
   std::atomic<bool> given_up_{false};
   std::mutex mutex_;
   std::exception_ptr failure_;
+  std::size_t done_here_ = 0;
   double seconds_all_ = 0.0, seconds_done_ = 0.0;
 };
 

@@ -1,5 +1,7 @@
 #include "io/svg_plot.hpp"
 
+#include "io/markup.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,21 +14,6 @@ namespace {
 
 constexpr double width = 640.0, height = 420.0;
 constexpr double left = 72.0, right = 20.0, top = 36.0, bottom = 52.0;
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else if (static_cast<unsigned char>(c) >= 0x20) // XML has no other control characters
-      result += c;
-  }
-  return result;
-}
 
 /// Values to places along one side of the frame.
 class Scale {

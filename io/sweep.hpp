@@ -2,32 +2,21 @@
 // all.
 #pragma once
 
+#include "io/case_options.hpp"
 #include "io/scene_file.hpp"
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 namespace grandamp {
 
-struct CaseProgress; // io/case_pool.hpp
-
-struct SweepOptions {
+struct SweepOptions : CaseOptions {
   std::vector<std::string> vary;      ///< KEY=START:STOP:COUNT[:log] or KEY=a,b,c
   std::vector<std::string> overrides; ///< KEY=VALUE that the document has already: only to refuse what is varied too
-  int seeds = 1;                      ///< runs of each point, from the scene's seed on
   bool keep_total_mass = false;
-  int index = 0, of = 1;                           ///< which part of how many
-  int threads = 0;                                 ///< in all; 0: what the process may use
-  std::string isa;                                 ///< empty: the best
-  double max_wall = 0.0;                           ///< s after which it stops as if interrupted; 0: no end
-  bool force = false;                              ///< replace the sweep that the folder holds
-  std::function<void(const std::string&)> tell;    ///< what will be run
-  std::function<void(const std::string&)> warning; ///< a case that failed, as the sweep goes
-  std::function<void(const CaseProgress&)> progress;
-  std::function<bool()> stop_requested;
+  int index = 0, of = 1; ///< which part of how many
 };
 
 struct SweepResult {

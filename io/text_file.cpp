@@ -31,8 +31,12 @@ void TextFile::close() {
 }
 
 void replace_file(const std::filesystem::path& path, std::string_view text) {
+  replace_file(path, text, ".new");
+}
+
+void replace_file(const std::filesystem::path& path, std::string_view text, std::string_view ending) {
   std::filesystem::path beside = path;
-  beside += ".new";
+  beside += ending;
   std::error_code error;
   try {
     TextFile file(beside);

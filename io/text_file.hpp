@@ -29,5 +29,7 @@ private:
 
 /// The whole file or, on an error, what was there before.
 void replace_file(const std::filesystem::path& path, std::string_view text);
+/// `ending`: of the name under which it is written first.
+void replace_file(const std::filesystem::path& path, std::string_view text, std::string_view ending);
 
 } // namespace grandamp

@@ -29,6 +29,10 @@ struct Coordinates {
     radius = z + rows; // vectors may read past it: the upper half of the buffer is free
   }
 
+  kernels::CandidateArguments arguments(const VerletList::Search& search) const {
+    return {x, y, z, radius, search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0)};
+  }
+
   void fill(const Granules& granules, std::uint32_t first, std::uint32_t last) const {
     for (std::uint32_t i = first; i < last; ++i) {
       const kernels::PositionRow& row = granules.position[i];
@@ -247,12 +251,7 @@ void VerletList::search_all(Granules& granules, const std::vector<Wall>& walls, 
                             const Team& team) {
   cut_into_segments(granules.count());
   const Coordinates coordinates(granules);
-  kernels::CandidateArguments arguments;
-  arguments.x = coordinates.x;
-  arguments.y = coordinates.y;
-  arguments.z = coordinates.z;
-  arguments.radius = coordinates.radius;
-  arguments.reach = search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0);
+  const kernels::CandidateArguments arguments = coordinates.arguments(search);
 
   team.each(segments_.size(), [&](std::size_t s) {
     coordinates.fill(granules, grid_.layer_start(segment_layers_[s]), grid_.layer_start(segment_layers_[s + 1]));
@@ -270,12 +269,7 @@ void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall
   granules.keep_shares(0, granules.count());
   const Coordinates coordinates(granules);
   coordinates.fill(granules, 0, granules.count());
-  kernels::CandidateArguments arguments;
-  arguments.x = coordinates.x;
-  arguments.y = coordinates.y;
-  arguments.z = coordinates.z;
-  arguments.radius = coordinates.radius;
-  arguments.reach = search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0);
+  const kernels::CandidateArguments arguments = coordinates.arguments(search);
 
   segments_.resize(1);
   Segment& segment = segments_.front();

@@ -1,7 +1,7 @@
 // How far many runs are: one updating line on a terminal, a line every half minute in a log.
 #pragma once
 
-#include "io/case_pool.hpp"
+#include "io/case_options.hpp"
 
 #include <string>
 

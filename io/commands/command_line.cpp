@@ -1,7 +1,6 @@
 #include "io/commands/commands.hpp"
 #include "io/commands/options.hpp"
 #include "io/run.hpp"
-#include "io/study.hpp"
 #include "io/version.hpp"
 #include "kernels/dispatch.hpp"
 
@@ -33,25 +32,6 @@ void add_max_wall(CLI::App& command, double& seconds) {
   command.add_option("--max-wall", seconds, "Write a checkpoint after so much wall time and stop with status 130")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
-}
-
-void add_study(CLI::App& command, StudyArguments& study) {
-  command.add_option("SCENE", study.scene, "Scene file, TOML")->required();
-  command.add_option("-o", study.folder, "Folder of the study; default: the scene's stem")->type_name("DIR");
-  command.add_option("--error", study.error, "Recommend settings for this error, 0.01 or 1%")->type_name("E");
-  command.add_option("--seeds", study.seeds, "Runs of each setting; their scatter tells what is chance; default 3")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000));
-  command.add_option("--vary", study.vary, "What to vary; default: all")
-      ->delimiter(',')
-      ->check(CLI::IsMember(std::vector<std::string>(std::begin(study_groups), std::end(study_groups))));
-  add_overrides(command, study.overrides);
-  add_threads(command, study.threads);
-  add_isa(command, study.isa);
-  command.add_flag("--force", study.force, "Replace the study that the folder holds");
-  add_quiet(command, study.quiet);
-  command.add_flag("--json", study.json, "Print study.json on standard output");
-  add_max_wall(command, study.max_wall);
 }
 
 void log_each(spdlog::level::level_enum level, const std::filesystem::path& scene,

@@ -46,29 +46,12 @@ struct CheckArguments {
   bool json = false;
 };
 
-struct StudyArguments {
+/// Of a command that makes many runs.
+struct CaseArguments {
   std::filesystem::path scene;
   std::filesystem::path folder;       ///< empty: the scene's stem
   std::vector<std::string> overrides; ///< KEY=VALUE
-  std::string error = "1%";           ///< that settings are recommended for
-  int seeds = 3;
-  std::vector<std::string> vary; ///< groups of settings; empty: all
-  int threads = 0;               ///< 0: what the process may use
-  std::string isa;
-  double max_wall = 0.0; ///< s; 0: no end
-  bool force = false;
-  bool quiet = false;
-  bool json = false;
-};
-
-struct SweepArguments {
-  std::filesystem::path scene;
-  std::filesystem::path folder;       ///< empty: the scene's stem
-  std::vector<std::string> overrides; ///< KEY=VALUE
-  std::vector<std::string> vary;      ///< KEY=START:STOP:COUNT or KEY=a,b,c
-  std::string keep;                   ///< "total_mass" or empty
   int seeds = 1;
-  std::optional<int> index, of;
   int threads = 0; ///< 0: what the process may use
   std::string isa;
   double max_wall = 0.0; ///< s; 0: no end
@@ -77,21 +60,24 @@ struct SweepArguments {
   bool json = false;
 };
 
-struct OptimiseArguments {
-  std::filesystem::path scene;
-  std::filesystem::path folder;       ///< empty: the scene's stem
-  std::vector<std::string> overrides; ///< KEY=VALUE
-  std::string minimise, maximise;     ///< a number of the summary; one of the two
-  std::vector<std::string> over;      ///< KEY=A:B
-  std::string keep;                   ///< "total_mass" or empty
-  int seeds = 3;
+struct StudyArguments : CaseArguments {
+  StudyArguments() { seeds = 3; }
+  std::string error = "1%";      ///< that settings are recommended for
+  std::vector<std::string> vary; ///< groups of settings; empty: all
+};
+
+struct SweepArguments : CaseArguments {
+  std::vector<std::string> vary; ///< KEY=START:STOP:COUNT or KEY=a,b,c
+  std::string keep;              ///< "total_mass" or empty
+  std::optional<int> index, of;
+};
+
+struct OptimiseArguments : CaseArguments {
+  OptimiseArguments() { seeds = 3; }
+  std::string minimise, maximise; ///< a number of the summary; one of the two
+  std::vector<std::string> over;  ///< KEY=A:B
+  std::string keep;               ///< "total_mass" or empty
   int evaluations = 20;
-  int threads = 0; ///< 0: what the process may use
-  std::string isa;
-  double max_wall = 0.0; ///< s; 0: no end
-  bool force = false;
-  bool quiet = false;
-  bool json = false;
 };
 
 struct ExportArguments {

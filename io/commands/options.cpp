@@ -1,5 +1,7 @@
 #include "io/commands/options.hpp"
 
+#include "io/study.hpp"
+
 #include <CLI/CLI.hpp>
 
 namespace grandamp {
@@ -33,22 +35,42 @@ void add_keep(CLI::App& command, std::string& keep) {
       ->check(CLI::IsMember({"total_mass"}));
 }
 
-void add_runs_at_a_time(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "Runs at a time; default: what the process may use")
+/// What sweeps, searches and studies have alike. `what` they are, and `table` is the file that --json prints.
+void add_case_options(CLI::App& command, CaseArguments& arguments, const std::string& what, const std::string& table,
+                      const std::string& runs) {
+  command.add_option("SCENE", arguments.scene, "Scene file, TOML")->required();
+  command.add_option("-o", arguments.folder, "Folder of the " + what + "; default: the scene's stem")->type_name("DIR");
+  command.add_option("--seeds", arguments.seeds, runs + "; default " + std::to_string(arguments.seeds))
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
+  add_overrides(command, arguments.overrides);
+  command.add_option("--threads", arguments.threads, "Runs at a time; default: what the process may use")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
-}
-
-void add_max_wall_of_all(CLI::App& command, double& seconds) {
-  command.add_option("--max-wall", seconds, "After so much wall time let all runs write checkpoints; status 130")
+  add_isa(command, arguments.isa);
+  command.add_flag("--force", arguments.force, "Replace the " + what + " that the folder holds");
+  add_quiet(command, arguments.quiet);
+  command.add_flag("--json", arguments.json, "Print " + table + " on standard output");
+  command
+      .add_option("--max-wall", arguments.max_wall,
+                  "After so much wall time let all runs stop; status 130; given again, "
+                  "the command goes on")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
 }
 
 } // namespace
 
+void add_study(CLI::App& command, StudyArguments& study) {
+  add_case_options(command, study, "study", "study.json", "Runs of each setting; their scatter tells what is chance");
+  command.add_option("--error", study.error, "Recommend settings for this error, 0.01 or 1%")->type_name("E");
+  command.add_option("--vary", study.vary, "What to vary; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(study_groups), std::end(study_groups))));
+}
+
 void add_sweep(CLI::App& command, SweepArguments& sweep) {
-  command.add_option("SCENE", sweep.scene, "Scene file, TOML")->required();
+  add_case_options(command, sweep, "sweep", "sweep.json", "Runs of each point, from seeds that follow the scene's");
   command
       .add_option("--vary", sweep.vary,
                   "A scene key and its values, both ends included: KEY=START:STOP:COUNT, by equal factors with :log at "
@@ -57,23 +79,9 @@ void add_sweep(CLI::App& command, SweepArguments& sweep) {
       ->required()
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("-o", sweep.folder, "Folder of the sweep; default: the scene's stem")->type_name("DIR");
-  command.add_option("--seeds", sweep.seeds, "Runs of each point, from seeds that follow the scene's; default 1")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000));
   add_keep(command, sweep.keep);
   command.add_option("--index", sweep.index, "With --of: run this part only, from 0")->type_name("I");
   command.add_option("--of", sweep.of, "Parts that the runs are dealt out to, as for job arrays")->type_name("N");
-  add_overrides(command, sweep.overrides);
-  add_runs_at_a_time(command, sweep.threads);
-  add_isa(command, sweep.isa);
-  command.add_flag("--force", sweep.force, "Replace the sweep that the folder holds");
-  add_quiet(command, sweep.quiet);
-  command.add_flag("--json", sweep.json, "Print sweep.json on standard output");
-  command
-      .add_option("--max-wall", sweep.max_wall, "After so much wall time let all runs write checkpoints; status 130")
-      ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
   command.footer("Given again, the command runs only what is missing. Examples:\n"
                  "  grandamp sweep damper.toml --vary excitation.frequency=15.5:16.5:11 --seeds 3\n"
                  "      the response, with error bars, beside the bare structure and the granules as added mass\n"
@@ -86,7 +94,7 @@ void add_sweep(CLI::App& command, SweepArguments& sweep) {
 }
 
 void add_optimise(CLI::App& command, OptimiseArguments& optimise) {
-  command.add_option("SCENE", optimise.scene, "Scene file, TOML")->required();
+  add_case_options(command, optimise, "search", "optimise.json", "Runs of each design, the same seeds for all");
   CLI::Option* const least = command.add_option("--minimise", optimise.minimise,
                                                 "A number of summary.json, dotted: structure.rms_displacement");
   least->type_name("KEY");
@@ -99,21 +107,10 @@ void add_optimise(CLI::App& command, OptimiseArguments& optimise) {
       ->required()
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("-o", optimise.folder, "Folder of the search; default: the scene's stem")->type_name("DIR");
-  command.add_option("--seeds", optimise.seeds, "Runs of each design, the same seeds for all; default 3")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000));
   command.add_option("--evaluations", optimise.evaluations, "Designs at most; default 20")
       ->type_name("N")
       ->check(CLI::Range(2, 10000));
   add_keep(command, optimise.keep);
-  add_overrides(command, optimise.overrides);
-  add_runs_at_a_time(command, optimise.threads);
-  add_isa(command, optimise.isa);
-  command.add_flag("--force", optimise.force, "Replace the search that the folder holds");
-  add_quiet(command, optimise.quiet);
-  command.add_flag("--json", optimise.json, "Print optimise.json on standard output");
-  add_max_wall_of_all(command, optimise.max_wall);
   command.footer("Given again, the command goes on where it was. Examples:\n"
                  "  grandamp optimise damper.toml --minimise structure.rms_displacement \\\n"
                  "      --over granules.0.radius=1.2e-3:2.6e-3 --keep total_mass\n"

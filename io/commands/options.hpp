@@ -17,6 +17,7 @@ void add_threads(CLI::App& command, int& threads);
 void add_isa(CLI::App& command, std::string& isa);
 void add_quiet(CLI::App& command, bool& quiet);
 
+void add_study(CLI::App& command, StudyArguments& study);
 void add_sweep(CLI::App& command, SweepArguments& sweep);
 void add_optimise(CLI::App& command, OptimiseArguments& optimise);
 

@@ -1,9 +1,6 @@
 #include "io/sweep.hpp"
-#include "io/case_pool.hpp"
-#include "io/commands/case_progress.hpp"
-#include "io/commands/commands.hpp"
+#include "io/commands/case_command.hpp"
 #include "io/run.hpp"
-#include "io/signals.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -39,43 +36,18 @@ int tell_end(const SweepResult& result, const std::filesystem::path& folder) {
 } // namespace
 
 int sweep_command(const SweepArguments& arguments) {
-  require_isa(arguments.isa);
   if (arguments.index.has_value() != arguments.of.has_value())
     throw UsageError("--index and --of go together: --index I --of N runs the I-th of N parts, I from 0");
-  const SceneDocument document = read_scene(arguments.scene, arguments.overrides);
-  tell_notes(arguments.scene, document.notes);
-  const std::filesystem::path folder = arguments.folder.empty() ? arguments.scene.stem() : arguments.folder;
-  CaseProgressPrinter printer(arguments.quiet);
+  CaseCommand command(arguments);
   SweepOptions options;
   options.vary = arguments.vary;
   options.overrides = arguments.overrides;
-  options.seeds = arguments.seeds;
   options.keep_total_mass = arguments.keep == "total_mass";
   options.index = arguments.index.value_or(0);
   options.of = arguments.of.value_or(1);
-  options.threads = arguments.threads;
-  options.isa = arguments.isa;
-  options.max_wall = arguments.max_wall;
-  options.force = arguments.force;
-  options.tell = [](const std::string& line) { spdlog::info("{}", line); };
-  options.warning = [&printer](const std::string& line) {
-    printer.clear();
-    spdlog::warn("{}", line);
-  };
-  options.progress = [&printer](const CaseProgress& progress) { printer.show(progress); };
-  options.stop_requested = SignalWatch::stop_requested;
-
-  const SignalWatch watch;
-  SweepResult result;
-  try {
-    result = sweep(document, arguments.scene.string(), folder, options);
-  } catch (...) {
-    printer.clear();
-    throw;
-  }
-  printer.clear();
+  const SweepResult result = command.run(options, sweep);
   if (arguments.json) tell(result.json);
-  return tell_end(result, folder);
+  return tell_end(result, command.folder());
 }
 
 } // namespace grandamp
