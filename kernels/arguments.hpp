@@ -122,16 +122,22 @@ struct MotionArguments {
   double frame_velocity[3] = {0.0, 0.0, 0.0}; ///< of the enclosure at t_n, m/s (energies)
 };
 
+/// By kind of force, J.
+struct Losses {
+  double normal_granule = 0.0;
+  double normal_wall = 0.0;
+  double friction_granule = 0.0;
+  double friction_wall = 0.0;
+};
+
 /// Sums are in granule order; max_speed_squared goes in as the largest so far.
 struct MotionResult {
   double max_speed_squared = 0.0;
   double sum_speed_squared = 0.0;          ///< of all, so that a NaN or an infinity shows
   double kinetic = 0.0;                    ///< laboratory frame, at t_n, J (energies)
   double mass_moment[3] = {0.0, 0.0, 0.0}; ///< sum of m x, enclosure's frame, at t_n, kg m (energies)
-  double normal_granule = 0.0;             ///< dissipated in this step, J (ledger)
-  double normal_wall = 0.0;
-  double friction_granule = 0.0;
-  double friction_wall = 0.0;
+  Losses lost;                             ///< in this step (ledger)
+  Losses early;                            ///< as much of them as is lost before t_n (ledger and energies)
 };
 
 /// Candidate search for the granules of one cell against contiguous ranges of others. Reads positions as four arrays.

@@ -24,8 +24,10 @@ template <class S, MotionEffects E> struct MotionLoop {
   /// T/I = (5/2) turn / (m r), and s = r omega.
   const Row turn = S::row_set(2.5 * a.time_step, 2.5 * a.time_step, 2.5 * a.time_step, 0.0);
   Row kinetic = zero, spinning = zero, moment = zero;
-  Row normal_granule = zero, normal_wall = zero;
-  Row friction_granule = zero, friction_granule_turn = zero, friction_wall = zero, friction_wall_turn = zero;
+  struct RowLosses {
+    Row normal_granule, normal_wall, friction_granule, friction_wall;
+  };
+  RowLosses lost{zero, zero, zero, zero}, early{zero, zero, zero, zero};
 
   /// Moves granule i; its new velocity.
   Row move(std::uint32_t i) {
@@ -89,27 +91,52 @@ template <class S, MotionEffects E> struct MotionLoop {
   void dissipate(std::uint32_t i, Row mean, Row gained, Row mean_spin, Row spun) {
     AccelerationRow& acceleration = a.granules.acceleration[i];
     const KindRows &now = a.granules.kinds, &then = a.granules.kinds_before;
-    const Row velocity = S::row_fma(share_of_step, S::row_load(acceleration.velocity), mean);
-    const Row last = twelfth * gained;
-    S::row_store(acceleration.velocity, gained * per_second);
-    take(normal_granule, now.damping_granule[i].force, then.damping_granule[i].force, velocity, last);
-    take(normal_wall, now.damping_wall[i].force, then.damping_wall[i].force, velocity, last);
-    take(friction_granule, now.friction_granule[i].force, then.friction_granule[i].force, velocity, last);
-    take(friction_wall, now.friction_wall[i].force, then.friction_wall[i].force, velocity, last);
+    const Motion moved = at_once(mean, gained, acceleration.velocity);
+    take(lost.normal_granule, early.normal_granule, now.damping_granule[i].force, then.damping_granule[i].force, moved);
+    take(lost.normal_wall, early.normal_wall, now.damping_wall[i].force, then.damping_wall[i].force, moved);
+    take(lost.friction_granule, early.friction_granule, now.friction_granule[i].force, then.friction_granule[i].force,
+         moved);
+    take(lost.friction_wall, early.friction_wall, now.friction_wall[i].force, then.friction_wall[i].force, moved);
     if constexpr (E.rotates()) {
-      const Row spin = S::row_fma(share_of_step, S::row_load(acceleration.surface_spin), mean_spin);
-      const Row last_spin = twelfth * spun;
-      S::row_store(acceleration.surface_spin, spun * per_second);
-      take(friction_granule_turn, now.friction_granule[i].turn, then.friction_granule[i].turn, spin, last_spin);
-      take(friction_wall_turn, now.friction_wall[i].turn, then.friction_wall[i].turn, spin, last_spin);
+      const Motion turned = at_once(mean_spin, spun, acceleration.surface_spin);
+      take(lost.friction_granule, early.friction_granule, now.friction_granule[i].turn, then.friction_granule[i].turn,
+           turned);
+      take(lost.friction_wall, early.friction_wall, now.friction_wall[i].turn, then.friction_wall[i].turn, turned);
     }
   }
 
+  /// Velocities that a step's forces, and those of the step before, are multiplied by.
+  struct Motion {
+    Row now;   ///< all that this step can tell of the one at t_n
+    Row then;  ///< what it adds to that of the step before, negative
+    Row early; ///< for the half step before t_n: the kick up to t_n is half of the whole
+  };
+  Motion at_once(Row mean, Row gained, double* rate) {
+    Motion motion;
+    motion.now = S::row_fma(share_of_step, S::row_load(rate), mean);
+    motion.then = twelfth * gained;
+    if constexpr (E.energies()) motion.early = half * S::row_fnma(S::row_broadcast(0.25), gained, motion.now);
+    S::row_store(rate, gained * per_second);
+    return motion;
+  }
+
   /// The rows of the step before come out cleared: they are the next step's.
-  GRANDAMP_INLINE void take(Row& sum, const double* now, double* then, Row velocity, Row last) {
-    sum = S::row_fnma(S::row_load(now), velocity, sum);
-    sum = S::row_fma(S::row_load(then), last, sum);
-    S::row_store(then, S::row_broadcast(0.0));
+  void take(Row& sum, Row& before, const double* now, double* then, const Motion& motion) {
+    const Row force = S::row_load(now), last_force = S::row_load(then);
+    sum = S::row_fnma(force, motion.now, sum);
+    sum = S::row_fma(last_force, motion.then, sum);
+    if constexpr (E.energies()) {
+      before = S::row_fnma(force, motion.early, before);
+      before = S::row_fma(last_force, motion.then, before);
+    }
+    S::row_store(then, zero);
+  }
+
+  void tell(const RowLosses& rows, Losses& to) {
+    to.normal_granule += a.time_step * sum(rows.normal_granule);
+    to.normal_wall += a.time_step * sum(rows.normal_wall);
+    to.friction_granule += a.time_step * sum(rows.friction_granule);
+    to.friction_wall += a.time_step * sum(rows.friction_wall);
   }
 
   GRANDAMP_INLINE double sum(Row row) {
@@ -154,10 +181,8 @@ template <class S, MotionEffects E> void motion_kernel(const MotionArguments& a,
     for (int k = 0; k < 3; ++k) result.mass_moment[k] += moment[k];
   }
   if constexpr (E.ledger()) {
-    result.normal_granule += a.time_step * loop.sum(loop.normal_granule);
-    result.normal_wall += a.time_step * loop.sum(loop.normal_wall);
-    result.friction_granule += a.time_step * (loop.sum(loop.friction_granule) + loop.sum(loop.friction_granule_turn));
-    result.friction_wall += a.time_step * (loop.sum(loop.friction_wall) + loop.sum(loop.friction_wall_turn));
+    loop.tell(loop.lost, result.lost);
+    if constexpr (E.energies()) loop.tell(loop.early, result.early);
   }
 }
 

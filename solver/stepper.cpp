@@ -21,12 +21,20 @@ namespace {
 constexpr std::array ledger_terms{&Ledger::work_in,     &Ledger::structural_damping, &Ledger::normal_granule,
                                   &Ledger::normal_wall, &Ledger::friction_granule,   &Ledger::friction_wall};
 
-/// The share of a step's dissipation that falls before t_n.
-Ledger first_half(const StepRecord& record) {
-  Ledger half;
-  for (const auto term : ledger_terms) half.*term = 0.5 * (record.dissipated.*term);
-  half.work_in = record.enclosure.work_in_first_half;
-  half.structural_damping = record.enclosure.damping_loss_first_half;
+void add(Ledger& sum, const kernels::Losses& losses) {
+  sum.normal_granule += losses.normal_granule;
+  sum.normal_wall += losses.normal_wall;
+  sum.friction_granule += losses.friction_granule;
+  sum.friction_wall += losses.friction_wall;
+}
+
+/// What of step 0 lies before t = 0, and is no part of the run: energies, which tell more exactly, are not asked for
+/// in every run.
+Ledger before_the_start(const StepRecord& record) {
+  Ledger half = record.early;
+  for (const auto term :
+       {&Ledger::normal_granule, &Ledger::normal_wall, &Ledger::friction_granule, &Ledger::friction_wall})
+    half.*term = 0.5 * (record.dissipated.*term);
   return half;
 }
 
@@ -34,9 +42,8 @@ Ledger first_half(const StepRecord& record) {
 
 Ledger Stepper::ledger_at(const StepRecord& record) const {
   Ledger sum = ledger_;
-  const Ledger half = first_half(record);
   if (step_number_ > 0)
-    for (const auto term : ledger_terms) sum.*term += half.*term;
+    for (const auto term : ledger_terms) sum.*term += record.early.*term;
   // What friction took since t = 0, less what its springs would give back.
   sum.friction_granule -= record.spring_granule;
   sum.friction_wall -= record.spring_wall;
@@ -58,10 +65,8 @@ void Stepper::take_part(bool energies) {
   audit_if_due();
   record_ = advance(energies);
   ++kick_number_;
-  // The first half of step 0 lies before t = 0.
-  const Ledger before = first_half(record_);
-  for (const auto term : ledger_terms)
-    ledger_.*term += record_.dissipated.*term - (step_number_ == 0 ? before.*term : 0.0);
+  const Ledger before = step_number_ == 0 ? before_the_start(record_) : Ledger{};
+  for (const auto term : ledger_terms) ledger_.*term += record_.dissipated.*term - before.*term;
 }
 
 const StepRecord& Stepper::step_in_parts(std::size_t level, bool energies) {
@@ -291,6 +296,8 @@ StepRecord Stepper::collect(double reaction, const EnclosureStep& enclosure) {
   record.reaction = reaction;
   record.dissipated.work_in = enclosure.work_in;
   record.dissipated.structural_damping = enclosure.damping_loss;
+  record.early.work_in = enclosure.work_in_first_half;
+  record.early.structural_damping = enclosure.damping_loss_first_half;
   double max_speed_squared = 0.0, sum_speed_squared = 0.0;
   for (const SegmentResult& result : results_) {
     record.elastic += result.walls.elastic + result.pairs.elastic + result.walls.spring + result.pairs.spring;
@@ -300,10 +307,8 @@ StepRecord Stepper::collect(double reaction, const EnclosureStep& enclosure) {
     for (std::size_t k = 0; k < 3; ++k) record.wall_force[k] -= result.walls.force[k];
     record.kinetic += result.motion.kinetic;
     for (std::size_t k = 0; k < 3; ++k) record.mass_moment[k] += result.motion.mass_moment[k];
-    record.dissipated.normal_granule += result.motion.normal_granule;
-    record.dissipated.normal_wall += result.motion.normal_wall;
-    record.dissipated.friction_granule += result.motion.friction_granule;
-    record.dissipated.friction_wall += result.motion.friction_wall;
+    add(record.dissipated, result.motion.lost);
+    add(record.early, result.motion.early);
     for (const ContactResult* contact : {&result.pairs, static_cast<const ContactResult*>(&result.walls)}) {
       guards_.max_overlap = std::max(guards_.max_overlap, contact->max_overlap);
       guards_.max_closing = std::max(guards_.max_closing, contact->max_closing);

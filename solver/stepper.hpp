@@ -37,6 +37,7 @@ struct StepRecord {
   Vector3 mass_moment{0.0, 0.0, 0.0};             ///< with energies
   std::int64_t contacts = 0;                      ///< with energies
   Ledger dissipated;                              ///< in this step alone; granules' share with the ledger
+  Ledger early;                                   ///< what of it falls before t_n; granules' share with energies
   Ledger until;                                   ///< from t = 0 to t_n
 };
 

@@ -356,7 +356,7 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
   Vector frame_kick{};
   add(frame_kick, after.velocity - before.velocity, enclosure_.direction());
 
-  std::vector<Granule> mean = state.granules, velocity = state.granules, last = state.granules;
+  std::vector<Granule> mean = state.granules, velocity = state.granules, last = state.granules, early = state.granules;
   for (std::size_t i = 0; i < count; ++i) {
     Granule& one = state.granules[i];
     const Granule old = one;
@@ -367,6 +367,8 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
       mean[i].spin[k] = 0.5 * (old.spin[k] + one.spin[k]);
       velocity[i].velocity[k] = mean[i].velocity[k] + state.kick[i][k] / 12.0;
       velocity[i].spin[k] = mean[i].spin[k] + state.spin_kick[i][k] / 12.0;
+      early[i].velocity[k] = 0.5 * (velocity[i].velocity[k] - 0.25 * kick); // half of the kick comes after t_n
+      early[i].spin[k] = 0.5 * (velocity[i].spin[k] - 0.25 * spin_kick);
       last[i].velocity[k] = -kick / 12.0;
       last[i].spin[k] = -spin_kick / 12.0;
       state.kick[i][k] = kick;
@@ -378,34 +380,35 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
   for (const Touch& touch : acting.touches) count_touch(touch, state.granules);
 
   // The ledger, with the velocities at t_n of the path that the positions lie on, v - (kick after - kick before) / 12:
-  // a contact's last part is known when the next step's kick is. Half of this step belongs to a sample at t_n.
-  Ledger lost;
-  const auto lose = [&](const std::vector<Touch>& touches, const std::vector<Granule>& moving_at) {
+  // a contact's last part is known when the next step's kick is.
+  Ledger lost, lost_before; // in the whole step, and before t_n
+  const auto lose = [&](Ledger& sum, const std::vector<Touch>& touches, const std::vector<Granule>& moving_at) {
     for (const Touch& touch : touches) {
       if (touch.j == touch.i) {
         const auto power = reference::wall_dissipation(touch.contact, moving_at[touch.i], wall_law(touch.i));
-        lost.normal_wall += power.normal * step_;
-        lost.friction_wall += power.friction * step_;
+        sum.normal_wall += power.normal * step_;
+        sum.friction_wall += power.friction * step_;
       } else {
         const auto power = reference::pair_dissipation(touch.contact, moving_at[touch.i], moving_at[touch.j],
                                                        pair_law(touch.i, touch.j));
-        lost.normal_granule += power.normal * step_;
-        lost.friction_granule += power.friction * step_;
+        sum.normal_granule += power.normal * step_;
+        sum.friction_granule += power.friction * step_;
       }
     }
   };
-  lose(acting.touches, velocity);
-  lose(state.touches_before, last);
+  lose(lost, acting.touches, velocity);
+  lose(lost_before, acting.touches, early);
+  for (Ledger* sum : {&lost, &lost_before}) lose(*sum, state.touches_before, last);
   for (const Touch& touch : acting.touches) {
     const double smaller = std::min(mean[touch.i].radius, mean[touch.j].radius);
     state.max_overlap = std::max(state.max_overlap, touch.contact.overlap / smaller);
   }
   state.touches_before = acting.touches;
-  const auto book = [&](double share, const ReferenceHost& host) {
-    state.ledger.normal_granule += share * lost.normal_granule;
-    state.ledger.normal_wall += share * lost.normal_wall;
-    state.ledger.friction_granule += share * lost.friction_granule;
-    state.ledger.friction_wall += share * lost.friction_wall;
+  const auto book = [&](double share, const Ledger& losses, const ReferenceHost& host) {
+    state.ledger.normal_granule += share * losses.normal_granule;
+    state.ledger.normal_wall += share * losses.normal_wall;
+    state.ledger.friction_granule += share * losses.friction_granule;
+    state.ledger.friction_wall += share * losses.friction_wall;
     state.ledger.work_in += host.work_in;
     state.ledger.structural_damping += host.loss;
   };
@@ -417,7 +420,7 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
   if (sample) {
     const Ledger start_of_step = state.ledger;
     // At the very start nothing has been lost yet: the half step before t = 0 is not part of the run.
-    if (state.step_number > 0) book(0.5, middle);
+    if (state.step_number > 0) book(1.0, lost_before, middle);
     sample->time = now;
     sample->displacement = middle.displacement;
     sample->velocity = middle.velocity;
@@ -441,11 +444,11 @@ void ReferenceRun::advance(State& state, Sample* sample, std::vector<Granule>* s
     state.ledger = start_of_step;
   }
   if (state.step_number > 0) {
-    book(1.0, after);
+    book(1.0, lost, after);
   } else {
     after.work_in -= middle.work_in;
     after.loss -= middle.loss;
-    book(0.5, after);
+    book(0.5, lost, after);
   }
   after.work_in = after.loss = 0.0;
   state.host = after;
