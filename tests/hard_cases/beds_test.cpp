@@ -81,10 +81,7 @@ TEST_CASE("hard cases: jammed at 62 percent and shaken at 50 g") {
   for (const Choice& choice : pairwise_choices()) {
     const std::string settings = told(choice);
     CAPTURE(settings);
-    // Closed to 1 % over ten strokes; the short form is one, and all that happens in it is the first hits at once.
-    Bounds bounds;
-    if (!full_tests()) bounds.residual = residual_of_a_contact(choice);
-    report.add(choice, watch(jammed_box(choice.seed, full_tests()), choice, options), bounds);
+    report.add(choice, watch(jammed_box(choice.seed, full_tests()), choice, options));
   }
 }
 
@@ -164,8 +161,6 @@ TEST_CASE("hard cases: jammed and damped so strongly that nothing rebounds") {
       for (ContactConstants* constants : {&scene.contact.granule, &*scene.contact.wall}) constants->restitution = 0.1;
       WatchOptions options;
       options.looks = 30;
-      Bounds bounds;
-      if (!full_tests()) bounds.residual = residual_of_a_contact(choice);
-      report.add(choice, watch(scene, choice, options), bounds, tension ? "tension" : "no tension");
+      report.add(choice, watch(scene, choice, options), {}, tension ? "tension" : "no tension");
     }
 }

@@ -46,9 +46,10 @@ struct WatchOptions {
 /// What the integrator does to the energy of one elastic contact while it lasts.
 double allowed_rise(const Choice& choice);
 
-/// How far the ledger of a single contact may be off: its elastic energy is known at steps alone, to second order.
+/// How far the ledger of a single contact may be off while it lasts: kinetic and elastic energy are those of positions
+/// and velocities at one instant, to second order in the step.
 inline double residual_of_a_contact(const Choice& choice) {
-  return choice.steps_per_contact < 16.0 ? 0.05 : 0.0125;
+  return choice.steps_per_contact < 16.0 ? 0.02 : 0.005;
 }
 
 /// Runs the scene to its end, or to a guard.
