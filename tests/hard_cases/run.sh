@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the hard cases and writes tests/hard_cases/RESULTS.md from what they print.
-#   bash tests/hard_cases/run.sh           as long and as large as they are meant: an hour or more on two processors
+#   bash tests/hard_cases/run.sh           as long and as large as they are meant: twenty minutes on two processors
 #   bash tests/hard_cases/run.sh --short   the form of every day
 # The release build with its tests must be there: cmake --preset release -DGRANDAMP_TESTS=ON && cmake --build --preset release
 set -uo pipefail
