@@ -1,6 +1,5 @@
 #include "solver/granules.hpp"
 
-#include <algorithm>
 #include <cstring>
 
 namespace grandamp {
@@ -40,19 +39,12 @@ void ForcesByKind::take(const ForcesByKind& from, const std::uint32_t* order, st
 }
 
 ForcesByKind ForcesByKind::copy() const {
-  ForcesByKind all(damping_granule.size());
-  std::copy_n(damping_granule.data(), damping_granule.size(), all.damping_granule.data());
-  std::copy_n(damping_wall.data(), damping_wall.size(), all.damping_wall.data());
-  std::copy_n(friction_granule.data(), friction_granule.size(), all.friction_granule.data());
-  std::copy_n(friction_wall.data(), friction_wall.size(), all.friction_wall.data());
-  return all;
-}
-
-void ForcesByKind::swap(ForcesByKind& other) noexcept {
-  damping_granule.swap(other.damping_granule);
-  damping_wall.swap(other.damping_wall);
-  friction_granule.swap(other.friction_granule);
-  friction_wall.swap(other.friction_wall);
+  ForcesByKind other;
+  other.damping_granule = damping_granule.copy();
+  other.damping_wall = damping_wall.copy();
+  other.friction_granule = friction_granule.copy();
+  other.friction_wall = friction_wall.copy();
+  return other;
 }
 
 Granules::Granules(std::size_t count, GranuleStorage storage)
@@ -112,7 +104,7 @@ void Granules::swap_permuted() {
   share_.swap(spare_share_);
   motion.swap_memory(force); // where permute() put the rows
   acceleration.swap(spare_acceleration_);
-  kinds.swap(kinds_before);
+  age_kinds(); // permute() put the last step's into the place of this one's
   set_ghosts();
 }
 

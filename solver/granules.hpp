@@ -5,6 +5,7 @@
 #include "solver/row_array.hpp"
 
 #include <cstdint>
+#include <utility>
 
 namespace grandamp {
 
@@ -26,7 +27,6 @@ struct ForcesByKind {
   void clear(std::uint32_t first, std::uint32_t last);
   /// Row k becomes what row order[k] of `from` is.
   void take(const ForcesByKind& from, const std::uint32_t* order, std::uint32_t first, std::uint32_t last);
-  void swap(ForcesByKind& other) noexcept;
   ForcesByKind copy() const;
 };
 
@@ -56,7 +56,7 @@ public:
   void swap_permuted();
   void clear_forces(std::uint32_t first, std::uint32_t last);
   /// After a step: its forces by kind are those of the step before.
-  void age_kinds() noexcept { kinds.swap(kinds_before); }
+  void age_kinds() noexcept { std::swap(kinds, kinds_before); }
   /// Puts the two ghost rows in place.
   void set_ghosts();
 

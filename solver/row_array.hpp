@@ -2,6 +2,7 @@
 // them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <new>
@@ -41,6 +42,12 @@ public:
     RowArray larger(size);
     for (std::size_t k = 0; k < keep; ++k) larger.data_[k] = data_[k];
     swap(larger);
+  }
+
+  RowArray copy() const {
+    RowArray other(size_);
+    std::copy_n(data_, size_, other.data_);
+    return other;
   }
 
   T* data() noexcept { return data_; }

@@ -103,15 +103,10 @@ void Stepper::drift(double time) {
 
 StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_counts) {
   rebuild_if_due();
-  const auto copied = [&](const auto& rows) {
-    std::remove_cvref_t<decltype(rows)> copy(rows.size());
-    std::copy_n(rows.data(), rows.size(), copy.data());
-    return copy;
-  };
-  auto position = copied(granules_.position);
-  auto motion = copied(granules_.motion);
-  auto predicted = copied(granules_.predicted);
-  auto acceleration = copied(granules_.acceleration);
+  auto position = granules_.position.copy();
+  auto motion = granules_.motion.copy();
+  auto predicted = granules_.predicted.copy();
+  auto acceleration = granules_.acceleration.copy();
   ForcesByKind before = granules_.kinds_before.copy();
   const EnclosureState enclosure = enclosure_;
   const ListAge age = age_;
@@ -138,7 +133,7 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_co
   granules_.motion = std::move(motion);
   granules_.predicted = std::move(predicted);
   granules_.acceleration = std::move(acceleration);
-  granules_.kinds_before.swap(before);
+  granules_.kinds_before = std::move(before);
   enclosure_ = enclosure;
   age_ = age;
   guards_ = guards;
@@ -383,10 +378,7 @@ void Stepper::rebuild() {
   age_.built = true;
   if (plan_.scene.verlet.policy == ListPolicy::predicted)
     age_.allowed = predicted_interval(plan_.scene.verlet, skin_, largest_laboratory_speed(), part_);
-  if (plan_.scene.verlet.policy == ListPolicy::displacement) {
-    built_at_.reset(granules_.position.size());
-    std::copy_n(granules_.position.data(), granules_.position.size(), built_at_.data());
-  }
+  if (plan_.scene.verlet.policy == ListPolicy::displacement) built_at_ = granules_.position.copy();
 }
 
 double Stepper::largest_laboratory_speed() const {

@@ -221,11 +221,8 @@ void Stepper::take_half_step_back() {
   enclosure_ = motion_.start(reaction, wall_force());
   const Vector3 frame_change = motion_.velocity_change(at_start, enclosure_);
   const std::uint32_t count = granules_.count();
-  RowArray<PositionRow> position(granules_.position.size());
-  RowArray<MotionRow> motion(granules_.motion.size()), predicted(granules_.predicted.size());
-  std::copy_n(granules_.position.data(), position.size(), position.data());
-  std::copy_n(granules_.motion.data(), motion.size(), motion.data());
-  std::copy_n(granules_.predicted.data(), predicted.size(), predicted.data());
+  RowArray<PositionRow> position = granules_.position.copy();
+  RowArray<MotionRow> motion = granules_.motion.copy(), predicted = granules_.predicted.copy();
   Vector3 kick = plan_.scene.gravity;
   for (double& component : kick) component *= time_step_;
   boundary_forces(kernels);

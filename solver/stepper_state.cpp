@@ -14,14 +14,21 @@ using kernels::MotionRow;
 
 namespace {
 
-template <class Row>
-std::vector<double> columns_of(const RowArray<Row>& rows, std::uint32_t count, double (Row::*part)[3]) {
-  std::vector<double> values;
-  if (rows.size() == 0) return values;
-  values.reserve(3 * std::size_t{count});
-  for (std::uint32_t i = 0; i < count; ++i)
-    values.insert(values.end(), std::begin(rows[i].*part), std::end(rows[i].*part));
-  return values;
+/// Calls use(rows, part, values) for all that a state holds of the granules in rows of three components.
+template <class Rows, class State, class Use> void each_part(Rows& granules, State& s, Use use) {
+  use(granules.motion, &MotionRow::velocity, s.velocity);
+  use(granules.motion, &MotionRow::surface_spin, s.surface_spin);
+  use(granules.predicted, &MotionRow::velocity, s.predicted_velocity);
+  use(granules.predicted, &MotionRow::surface_spin, s.predicted_surface_spin);
+  use(granules.acceleration, &AccelerationRow::velocity, s.velocity_rate);
+  use(granules.acceleration, &AccelerationRow::surface_spin, s.surface_spin_rate);
+  auto& kinds = granules.kinds_before;
+  use(kinds.damping_granule, &DampingRow::force, s.damping_granule);
+  use(kinds.damping_wall, &DampingRow::force, s.damping_wall);
+  use(kinds.friction_granule, &ForceRow::force, s.friction_granule);
+  use(kinds.friction_granule, &ForceRow::turn, s.friction_granule_turn);
+  use(kinds.friction_wall, &ForceRow::force, s.friction_wall);
+  use(kinds.friction_wall, &ForceRow::turn, s.friction_wall_turn);
 }
 
 std::vector<double> places_of(const RowArray<kernels::PositionRow>& rows, std::uint32_t count) {
@@ -90,19 +97,13 @@ void Stepper::save(RunState& s) const {
     s.radius[i] = granules_.position[i].radius;
     s.inverse_mass[i] = granules_.motion[i].inverse_mass;
   }
-  s.velocity = columns_of(granules_.motion, count, &MotionRow::velocity);
-  s.surface_spin = columns_of(granules_.motion, count, &MotionRow::surface_spin);
-  s.predicted_velocity = columns_of(granules_.predicted, count, &MotionRow::velocity);
-  s.predicted_surface_spin = columns_of(granules_.predicted, count, &MotionRow::surface_spin);
-  s.velocity_rate = columns_of(granules_.acceleration, count, &AccelerationRow::velocity);
-  s.surface_spin_rate = columns_of(granules_.acceleration, count, &AccelerationRow::surface_spin);
-  const ForcesByKind& kinds = granules_.kinds_before;
-  s.damping_granule = columns_of(kinds.damping_granule, count, &DampingRow::force);
-  s.damping_wall = columns_of(kinds.damping_wall, count, &DampingRow::force);
-  s.friction_granule = columns_of(kinds.friction_granule, count, &ForceRow::force);
-  s.friction_granule_turn = columns_of(kinds.friction_granule, count, &ForceRow::turn);
-  s.friction_wall = columns_of(kinds.friction_wall, count, &ForceRow::force);
-  s.friction_wall_turn = columns_of(kinds.friction_wall, count, &ForceRow::turn);
+  each_part(granules_, s, [count](const auto& rows, auto part, std::vector<double>& values) {
+    values.clear();
+    if (rows.size() == 0) return;
+    values.reserve(3 * std::size_t{count});
+    for (std::uint32_t i = 0; i < count; ++i)
+      values.insert(values.end(), std::begin(rows[i].*part), std::end(rows[i].*part));
+  });
   s.friction_share.clear();
   if (contact_effects_.counts())
     for (std::uint32_t i = 0; i < count; ++i) s.friction_share.push_back(granules_.force[i].friction_share);
@@ -181,35 +182,20 @@ void Stepper::restore_granules(const RunState& s) {
   granules_ = Granules(s.id.size(), {.predicted = motion_effects_.integration == kernels::Integration::verlet,
                                      .ledger = plan_.scene.output.energy,
                                      .shares = contact_effects_.counts()});
-  const auto three = [](const std::vector<double>& values, std::size_t i, double(&to)[3]) {
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::begin(to));
-  };
   for (std::size_t i = 0; i < s.id.size(); ++i) {
     granules_.id[i] = s.id[i];
     granules_.population[i] = s.population[i];
     granules_.position[i] = {s.position[3 * i], s.position[3 * i + 1], s.position[3 * i + 2], s.radius[i]};
     MotionRow& row = granules_.motion[i];
-    three(s.velocity, i, row.velocity);
-    three(s.surface_spin, i, row.surface_spin);
     row.inverse_mass = s.inverse_mass[i];
     row.inverse_radius = 1.0 / s.radius[i];
     if (contact_effects_.counts()) granules_.force[i].friction_share = s.friction_share[i];
-    if (granules_.acceleration.size() > 0) {
-      three(s.velocity_rate, i, granules_.acceleration[i].velocity);
-      three(s.surface_spin_rate, i, granules_.acceleration[i].surface_spin);
-      ForcesByKind& kinds = granules_.kinds_before;
-      three(s.damping_granule, i, kinds.damping_granule[i].force);
-      three(s.damping_wall, i, kinds.damping_wall[i].force);
-      three(s.friction_granule, i, kinds.friction_granule[i].force);
-      three(s.friction_granule_turn, i, kinds.friction_granule[i].turn);
-      three(s.friction_wall, i, kinds.friction_wall[i].force);
-      three(s.friction_wall_turn, i, kinds.friction_wall[i].turn);
-    }
-    if (granules_.predicted.size() == 0) continue;
-    granules_.predicted[i] = row;
-    three(s.predicted_velocity, i, granules_.predicted[i].velocity);
-    three(s.predicted_surface_spin, i, granules_.predicted[i].surface_spin);
+    if (granules_.predicted.size() > 0) granules_.predicted[i] = row;
   }
+  each_part(granules_, s, [](auto& rows, auto part, const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size() / 3; ++i)
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::begin(rows[i].*part));
+  });
   granules_.set_ghosts();
 }
 
