@@ -102,6 +102,14 @@ tidy() {
   run-clang-tidy-14 -p build -j "$jobs" -quiet "$PWD/(kernels|solver|io)/(?!kernels_(generic|avx512|avx2_(candidates|none|energies|ledger\\.))).*\.cpp$"
 }
 
+# They are built last; a mistake in one should not take an hour to show.
+fuzz_syntax() {
+  local source
+  for source in tests/fuzz/*_fuzz.cpp; do
+    clang++-14 -std=c++20 -fsyntax-only -I. -isystem /usr/include/hdf5/serial -isystem /usr/include/eigen3 "$source" || return
+  done
+}
+
 fuzz() {
   local name=$1 found=$PWD/build-fuzz/found/$1
   mkdir -p "$found/corpus"
@@ -113,6 +121,7 @@ fuzz() {
 need packages install_packages "${test_packages[@]}"
 check layering bash tests/layering/check.sh
 check format format
+check fuzz_syntax fuzz_syntax
 need build_release build release -DGRANDAMP_TESTS=ON
 cases tests build .
 check package bash tests/package/check.sh build

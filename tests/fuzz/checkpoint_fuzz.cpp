@@ -254,7 +254,7 @@ void read(const Bench& bench) {
     for (const Segment& segment : list.segments())
       for (const PairList* pairs : {&segment.inner, &segment.boundary})
         for (std::size_t k = 0; k < pairs->count(); ++k)
-          demand(pairs->data()[k].first <= 3 && pairs->data()[k].second <= 3,
+          demand(pairs->data()[k].first() <= 3 && pairs->data()[k].second() <= 3,
                  "pairs are of granules or their two ghosts");
   } catch (const StateError& error) {
     demand_message(error.what());
