@@ -53,11 +53,6 @@ struct ContactResult {
   std::int64_t contacts = 0; ///< only with energies
 };
 
-struct IndexRange {
-  std::uint32_t first = 0;
-  std::uint32_t last = 0; ///< one past
-};
-
 struct PairArguments {
   GranuleArrays granules;
   const RowPair* pairs = nullptr;
@@ -140,32 +135,8 @@ struct MotionResult {
   Losses early;                            ///< as much of them as is lost before t_n (ledger and energies)
 };
 
-/// Candidate search for the granules of one cell against contiguous ranges of others. Reads positions as four arrays.
-struct CandidateArguments {
-  const double* x = nullptr;
-  const double* y = nullptr;
-  const double* z = nullptr;
-  const double* radius = nullptr; ///< null if all are alike
-  double reach = 0.0;             ///< skin; alike: both radii and the skin, m
-};
-
-/// Splits a list by the gap between two granules' surfaces.
-struct SplitArguments {
-  const PositionRow* position = nullptr;
-  RowPair* pairs = nullptr; ///< split in place; room for list_padding more is read
-  std::size_t count = 0;
-  RowPair* scratch = nullptr; ///< count + list_padding entries
-  double reach = 0.0;         ///< gap below which a pair is near; alike: both radii and that gap, m
-};
-
 using PairKernel = void(const PairArguments&, ContactResult&);
 using WallKernel = void(const WallArguments&, WallResult&);
-/// Moves the near pairs to the front, both kinds in their order; returns how many are near.
-using SplitKernel = std::size_t(const SplitArguments&);
 using MotionKernel = void(const MotionArguments&, MotionResult&);
-/// Granules [own.first, own.last) against those after them up to own_end, and against `count` ranges. Appends at `to`
-/// (which must have room for every pair tested, and list_padding more) and returns the new end.
-using CandidateKernel = RowPair*(const CandidateArguments&, IndexRange own, std::uint32_t own_end,
-                                 const IndexRange* ranges, int count, RowPair* to);
 
 } // namespace grandamp::kernels

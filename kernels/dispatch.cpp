@@ -1,5 +1,6 @@
 #include "kernels/dispatch.hpp"
 
+#include "kernels/candidate_kernel.hpp"
 #include "kernels/mixed_instantiation.hpp"
 
 namespace grandamp::kernels {
@@ -7,8 +8,7 @@ namespace grandamp::kernels {
 #define GRANDAMP_DECLARE(set)                                                                                          \
   extern const KernelTable set##_none, set##_energies, set##_ledger, set##_ledger_and_energies;                        \
   extern const MixedTable set##_mixed;                                                                                 \
-  extern CandidateKernel* const set##_candidates[2];                                                                   \
-  extern SplitKernel* const set##_split[2];
+  extern const SearchTable set##_search;
 GRANDAMP_DECLARE(generic)
 #ifdef GRANDAMP_HAVE_AVX2
 GRANDAMP_DECLARE(avx2)
@@ -23,25 +23,18 @@ namespace {
 struct InstructionSetTables {
   const KernelTable* by_observation[4];
   const MixedTable* mixed;
-  CandidateKernel* const* candidates;
-  SplitKernel* const* split;
+  const SearchTable* search;
 };
 
 const InstructionSetTables generic_tables = {
-    {&generic_none, &generic_energies, &generic_ledger, &generic_ledger_and_energies},
-    &generic_mixed,
-    generic_candidates,
-    generic_split};
+    {&generic_none, &generic_energies, &generic_ledger, &generic_ledger_and_energies}, &generic_mixed, &generic_search};
 #ifdef GRANDAMP_HAVE_AVX2
 const InstructionSetTables avx2_tables = {
-    {&avx2_none, &avx2_energies, &avx2_ledger, &avx2_ledger_and_energies}, &avx2_mixed, avx2_candidates, avx2_split};
+    {&avx2_none, &avx2_energies, &avx2_ledger, &avx2_ledger_and_energies}, &avx2_mixed, &avx2_search};
 #endif
 #ifdef GRANDAMP_HAVE_AVX512
 const InstructionSetTables avx512_tables = {
-    {&avx512_none, &avx512_energies, &avx512_ledger, &avx512_ledger_and_energies},
-    &avx512_mixed,
-    avx512_candidates,
-    avx512_split};
+    {&avx512_none, &avx512_energies, &avx512_ledger, &avx512_ledger_and_energies}, &avx512_mixed, &avx512_search};
 #endif
 
 const InstructionSetTables& tables(InstructionSet set) {
@@ -117,11 +110,13 @@ MotionKernel* motion_kernel_for(InstructionSet set, MotionEffects effects) {
   return table(set, effects.observation).motion[motion_set(effects)];
 }
 CandidateKernel* candidate_kernel_for(InstructionSet set, bool alike) {
-  return tables(set).candidates[alike ? 1 : 0];
+  return tables(set).search->candidates[alike ? 1 : 0];
 }
-
+CoarseKernel* coarse_kernel_for(InstructionSet set, bool alike) {
+  return tables(set).search->coarse[alike ? 1 : 0];
+}
 SplitKernel* split_kernel_for(InstructionSet set, bool alike) {
-  return tables(set).split[alike ? 1 : 0];
+  return tables(set).search->split[alike ? 1 : 0];
 }
 
 } // namespace grandamp::kernels

@@ -3,6 +3,7 @@
 
 #include "kernels/arguments.hpp"
 #include "kernels/effects.hpp"
+#include "kernels/search_arguments.hpp"
 
 namespace grandamp::kernels {
 
@@ -19,6 +20,7 @@ WallKernel* plane_kernel_for(InstructionSet set, ContactEffects effects);
 WallKernel* side_kernel_for(InstructionSet set, ContactEffects effects);
 MotionKernel* motion_kernel_for(InstructionSet set, MotionEffects effects);
 CandidateKernel* candidate_kernel_for(InstructionSet set, bool alike);
+CoarseKernel* coarse_kernel_for(InstructionSet set, bool alike);
 SplitKernel* split_kernel_for(InstructionSet set, bool alike);
 
 } // namespace grandamp::kernels

@@ -2,7 +2,6 @@
 // each of which instantiates the kernels of one Observation.
 #pragma once
 
-#include "kernels/candidate_kernel.hpp"
 #include "kernels/effects.hpp"
 #include "kernels/motion_kernel.hpp"
 #include "kernels/pair_kernel.hpp"

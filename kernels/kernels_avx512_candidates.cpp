@@ -2,9 +2,6 @@
 #include "kernels/simd_avx512.hpp"
 
 namespace grandamp::kernels {
-extern CandidateKernel* const avx512_candidates[2];
-constinit CandidateKernel* const avx512_candidates[2] = {candidate_kernel<Avx512, false>,
-                                                         candidate_kernel<Avx512, true>};
-extern SplitKernel* const avx512_split[2];
-constinit SplitKernel* const avx512_split[2] = {split_kernel<Avx512, false>, split_kernel<Avx512, true>};
+extern const SearchTable avx512_search;
+constinit const SearchTable avx512_search = search_table<Avx512>();
 } // namespace grandamp::kernels

@@ -2,9 +2,6 @@
 #include "kernels/simd_generic.hpp"
 
 namespace grandamp::kernels {
-extern CandidateKernel* const generic_candidates[2];
-constinit CandidateKernel* const generic_candidates[2] = {candidate_kernel<Generic, false>,
-                                                          candidate_kernel<Generic, true>};
-extern SplitKernel* const generic_split[2];
-constinit SplitKernel* const generic_split[2] = {split_kernel<Generic, false>, split_kernel<Generic, true>};
+extern const SearchTable generic_search;
+constinit const SearchTable generic_search = search_table<Generic>();
 } // namespace grandamp::kernels

@@ -51,6 +51,11 @@ struct alignas(32) SpringRow {
   double root;
 };
 
+struct IndexRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0; ///< one past
+};
+
 inline constexpr int offset_bits = 5; ///< a row's index shifted by these: bytes from the first position
 static_assert(sizeof(PositionRow) == 1U << offset_bits);
 inline constexpr std::uint32_t most_rows = 1U << (32 - offset_bits);

@@ -6,6 +6,7 @@
 //   S::Vector, S::width             lanes of double
 //   S::Row                          one row of four doubles
 //   S::Double                       the set that works in double: S itself, but for the mixed sets
+//   S::Eight                        eight lanes of float (kernels/eight_floats.hpp)
 //   S::tiny                         a square far below any speed's or force's that is not zero
 //   load, store, broadcast          unaligned
 //   fma(a, b, c) = a b + c, fnma(a, b, c) = c - a b   (fused where the instruction set has it)

@@ -1,7 +1,7 @@
 // AVX2 with FMA: four lanes. Arithmetic through xsimd; what it lacks, or does slowly, by hand.
 #pragma once
 
-#include "kernels/simd.hpp"
+#include "kernels/eight_floats_avx2.hpp"
 
 #include <immintrin.h>
 #include <xsimd/xsimd.hpp>
@@ -24,6 +24,7 @@ struct Avx2 {
   using Vector = xsimd::batch<double, xsimd::fma3<xsimd::avx2>>;
   using Row = Vector;
   using Double = Avx2;
+  using Eight = EightFloatsAvx2;
   static constexpr int width = 4;
   static constexpr double tiny = 1e-200;
 

@@ -1,7 +1,7 @@
 // AVX-512 (F, DQ, VL, BW): eight lanes for the law, rows of four as in AVX2, so that both give the same bits.
 #pragma once
 
-#include "kernels/simd.hpp"
+#include "kernels/eight_floats_avx2.hpp"
 
 #include <immintrin.h>
 #include <xsimd/xsimd.hpp>
@@ -16,6 +16,7 @@ struct Avx512 {
   using Vector = xsimd::batch<double, xsimd::avx512dq>;
   using Row = xsimd::batch<double, xsimd::fma3<xsimd::avx2>>;
   using Double = Avx512;
+  using Eight = EightFloatsAvx2;
   static constexpr int width = 8;
   static constexpr double tiny = 1e-200;
 

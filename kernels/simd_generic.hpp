@@ -2,7 +2,7 @@
 // multiply-add is assumed, so its bits differ from those of AVX2 and AVX-512.
 #pragma once
 
-#include "kernels/simd.hpp"
+#include "kernels/eight_floats.hpp"
 
 namespace grandamp::kernels {
 
@@ -11,6 +11,7 @@ struct Generic {
   typedef long long Mask __attribute__((vector_size(32)));
   using Row = Vector;
   using Double = Generic;
+  using Eight = EightFloats;
   static constexpr int width = 4;
   static constexpr double tiny = 1e-200;
 

@@ -126,7 +126,8 @@ private:
       for (int middle = 0; middle < shape.cells[1]; ++middle)
         for (int fast = 0; fast < shape.cells[0]; ++fast) kept = search_cell(a, fast, middle, slow, kept);
     pairs_.resize(kept);
-    while (pairs_.size() % kernels::list_padding != 0) pairs_.push_back({granules_.count(), granules_.count() + 1});
+    while (pairs_.size() % kernels::list_padding != 0)
+      pairs_.push_back(kernels::RowPair::of(granules_.count(), granules_.count() + 1));
     pairs_.resize(pairs_.size() + kernels::list_padding); // room that vectors may read
   }
 

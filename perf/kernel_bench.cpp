@@ -179,6 +179,7 @@ void build_bench(benchmark::State& state, InstructionSet set, bool alike, int ac
   VerletList list;
   VerletList::Search search;
   search.kernel = kernels::candidate_kernel_for(set, alike);
+  search.coarse = kernels::coarse_kernel_for(set, alike);
   search.split = kernels::split_kernel_for(set, alike);
   search.alike = alike;
   search.largest_radius = radius;

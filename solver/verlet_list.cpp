@@ -17,59 +17,76 @@ constexpr int most_segments = 16;
 /// layers a segment has.
 constexpr int least_layers = 8;
 
-/// Positions as four arrays, laid over the force rows (64 bytes a granule, of which 32 are needed).
-struct Coordinates {
-  double *x, *y, *z, *radius;
+/// Positions as four arrays in units of `unit`, laid over the force rows (64 bytes a granule, of which double needs
+/// 32).
+template <class Real> struct Coordinates {
+  Real *x, *y, *z, *radius;
+  double scale;
 
-  explicit Coordinates(Granules& granules) {
+  explicit Coordinates(Granules& granules, double unit) : scale(1.0 / unit) {
     const std::size_t rows = granules.force.size();
-    x = granules.force.data()->force;
+    x = reinterpret_cast<Real*>(granules.force.data());
     y = x + rows;
     z = y + rows;
     radius = z + rows; // vectors may read past it: the upper half of the buffer is free
   }
 
-  kernels::CandidateArguments arguments(const VerletList::Search& search) const {
-    return {x, y, z, radius, search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0)};
+  kernels::SearchArguments<Real> arguments(double reach) const {
+    return {x, y, z, radius, static_cast<Real>(reach * scale)};
   }
 
   void fill(const Granules& granules, std::uint32_t first, std::uint32_t last) const {
     for (std::uint32_t i = first; i < last; ++i) {
       const kernels::PositionRow& row = granules.position[i];
-      x[i] = row.x;
-      y[i] = row.y;
-      z[i] = row.z;
-      radius[i] = row.radius;
+      x[i] = static_cast<Real>(row.x * scale);
+      y[i] = static_cast<Real>(row.y * scale);
+      z[i] = static_cast<Real>(row.z * scale);
+      radius[i] = static_cast<Real>(row.radius * scale);
     }
   }
 };
 
-/// Sorts the pairs from `first` to the list's end by gap, and pads. Returns the classes' ends.
+double reach_of(const VerletList::Search& search, double share = 1.0) {
+  return share * search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0);
+}
+
+/// What a coarse search must reach further to find every pair: float turns each coordinate by up to 2^-24 of itself, so
+/// a distance by 2 sqrt(3) times that of the box, and rounds its square, the radii and their sum a few times more.
+double coarse_margin(const VerletList::Search& search, const Vector3& size) {
+  constexpr double rounding = 0x1p-24;
+  return 8.0 * rounding * std::max({size[0], size[1], size[2]}) +
+         16.0 * rounding * (2.0 * search.largest_radius + search.skin);
+}
+
+/// Sorts the pairs from `first` to the list's end by gap, without those beyond the skin, and pads. Returns the classes'
+/// ends; adds the pairs to the segment's candidates.
 PairRange classed(PairList& list, std::size_t first, const VerletList::Search& search, const Granules& granules,
-                  std::vector<RowPair>& scratch) {
+                  Segment& segment) {
   PairRange range;
   range.first = first;
-  const std::size_t count = list.count() - first;
-  list.room_for(kernels::list_padding);
-  if (scratch.size() < count + kernels::list_padding) scratch.resize(2 * count + kernels::list_padding);
   kernels::SplitArguments a;
   a.position = granules.position.data();
-  a.scratch = scratch.data();
-  const auto near = [&](std::size_t from, std::size_t to, double share) {
-    a.pairs = list.data() + from;
-    a.count = to - from;
-    a.reach = share * search.skin + (search.alike ? 2.0 * search.largest_radius : 0.0);
-    // Vectors are stored whole: what stands behind the part must not be lost.
-    std::array<RowPair, kernels::list_padding> behind;
-    std::copy_n(list.data() + to, behind.size(), behind.begin());
-    const std::size_t end = from + search.split(a);
-    std::copy_n(behind.begin(), behind.size(), list.data() + to);
-    return end;
-  };
-  const std::size_t half = near(first, list.count(), 0.5);
-  range.end = {near(first, half, 0.25), half, near(half, list.count(), 0.75), 0};
+  a.count = list.count() - first;
+  list.room_for(kernels::list_padding);
+  a.pairs = list.data() + first;
+  const std::size_t room = a.count + kernels::list_padding;
+  segment.far_pairs.clear();
+  RowPair* const scratch = segment.far_pairs.room_for(room * (gap_classes - 1));
+  for (std::size_t c = 1; c < gap_classes; ++c) a.scratch[c - 1] = scratch + (c - 1) * room;
+  for (std::size_t c = 0; c < gap_classes; ++c)
+    a.reach[c] = reach_of(search, static_cast<double>(c + 1) / static_cast<double>(gap_classes));
+  std::size_t sizes[gap_classes];
+  search.split(a, sizes);
+  RowPair* end = a.pairs + sizes[0];
+  range.end[0] = first + sizes[0];
+  for (std::size_t c = 1; c < gap_classes; ++c) {
+    end = std::copy_n(a.scratch[c - 1], sizes[c], end);
+    range.end[c] = range.end[c - 1] + sizes[c];
+  }
+  list.set_end(end);
+  segment.candidates += list.count() - first;
   list.pad(granules.count());
-  range.end[3] = list.count();
+  range.end.back() = list.count();
   return range;
 }
 
@@ -132,6 +149,16 @@ std::size_t PairRange::to_test(double share) const {
   return std::min(padded * kernels::list_padding, end[gap_classes - 1] - first);
 }
 
+kernels::CoarseScratch NearScratch::room_for(std::size_t entries) {
+  if (entries > entries_) {
+    entries_ = 2 * entries;
+    coordinates_.resize(4 * entries_);
+    offsets_.resize(entries_);
+  }
+  float* const x = coordinates_.data();
+  return {x, x + entries_, x + 2 * entries_, x + 3 * entries_, offsets_.data()};
+}
+
 RowPair* PairList::room_for(std::size_t more) {
   const std::size_t needed = count_ + more;
   if (needed > pairs_.size()) pairs_.grow(needed + needed / 2 + 64, count_);
@@ -171,7 +198,7 @@ void VerletList::cut_into_segments(std::uint32_t granules) {
 }
 
 void VerletList::search_segment(Segment& segment, int first_layer, int last_layer,
-                                const kernels::CandidateArguments& arguments, const Search& search,
+                                const kernels::CoarseArguments& arguments, const Search& search,
                                 const Granules& granules) {
   const GridShape& shape = grid_.shape();
   segment.first = grid_.layer_start(first_layer);
@@ -180,6 +207,7 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
   segment.inner.clear();
   segment.boundary.clear();
   segment.candidates = 0;
+  kernels::CoarseArguments here = arguments;
   Block block;
   block.first = segment.first;
   block.front = segment.first;
@@ -187,9 +215,8 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
 
   const auto finish_block = [&](std::uint32_t last) {
     block.last = last;
-    segment.candidates += segment.inner.count() - first_inner + segment.boundary.count() - first_boundary;
-    block.inner = classed(segment.inner, first_inner, search, granules, segment.far_pairs);
-    block.boundary = classed(segment.boundary, first_boundary, search, granules, segment.far_pairs);
+    block.inner = classed(segment.inner, first_inner, search, granules, segment);
+    block.boundary = classed(segment.boundary, first_boundary, search, granules, segment);
     first_inner = segment.inner.count();
     first_boundary = segment.boundary.count();
     segment.blocks.push_back(block);
@@ -200,7 +227,8 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
     std::size_t tests = (own_end > own.first ? own_end - own.first : 0) + kernels::list_padding;
     for (int k = 0; k < count; ++k) tests += ranges[k].last - ranges[k].first + kernels::list_padding;
     RowPair* to = list.room_for(tests * (own.last - own.first) + kernels::list_padding);
-    list.set_end(search.kernel(arguments, own, own_end, ranges, count, to));
+    here.scratch = segment.near.room_for(tests + kernels::list_padding);
+    list.set_end(search.coarse(here, own, own_end, ranges, count, to));
   };
 
   for (int slow = first_layer; slow < last_layer; ++slow) {
@@ -244,14 +272,14 @@ void VerletList::build(Granules& granules, const Vector3& size, const std::vecto
                        const Team& team, Profile* profile) {
   timed(profile, Phase::sort, 0,
         [&] { grid_.sort(granules, make_grid_shape(size, search.cell_length, granules.count()), team); });
-  timed(profile, Phase::build, 0, [&] { search_all(granules, walls, search, team); });
+  timed(profile, Phase::build, 0, [&] { search_all(granules, size, walls, search, team); });
 }
 
-void VerletList::search_all(Granules& granules, const std::vector<Wall>& walls, const Search& search,
-                            const Team& team) {
+void VerletList::search_all(Granules& granules, const Vector3& size, const std::vector<Wall>& walls,
+                            const Search& search, const Team& team) {
   cut_into_segments(granules.count());
-  const Coordinates coordinates(granules);
-  const kernels::CandidateArguments arguments = coordinates.arguments(search);
+  const Coordinates<float> coordinates(granules, search.cell_length);
+  const kernels::CoarseArguments arguments{coordinates.arguments(reach_of(search) + coarse_margin(search, size)), {}};
 
   team.each(segments_.size(), [&](std::size_t s) {
     coordinates.fill(granules, grid_.layer_start(segment_layers_[s]), grid_.layer_start(segment_layers_[s + 1]));
@@ -267,9 +295,9 @@ void VerletList::search_all(Granules& granules, const std::vector<Wall>& walls, 
 
 void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall>& walls, const Search& search) {
   granules.keep_shares(0, granules.count());
-  const Coordinates coordinates(granules);
+  const Coordinates<double> coordinates(granules, 1.0);
   coordinates.fill(granules, 0, granules.count());
-  const kernels::CandidateArguments arguments = coordinates.arguments(search);
+  const kernels::CandidateArguments arguments = coordinates.arguments(reach_of(search));
 
   segments_.resize(1);
   Segment& segment = segments_.front();
@@ -288,8 +316,7 @@ void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall
       RowPair* to = segment.inner.room_for(segment.last - i + 2 * kernels::list_padding);
       segment.inner.set_end(search.kernel(arguments, {i, i + 1}, segment.last, nullptr, 0, to));
     }
-    segment.candidates += segment.inner.count() - first_pair;
-    block.inner = classed(segment.inner, first_pair, search, granules, segment.far_pairs);
+    block.inner = classed(segment.inner, first_pair, search, granules, segment);
     block.front = segment.last;
     segment.blocks.push_back(block);
   }

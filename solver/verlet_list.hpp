@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kernels/arguments.hpp"
+#include "kernels/search_arguments.hpp"
 #include "solver/cell_grid.hpp"
 #include "solver/profile.hpp"
 #include "solver/walls.hpp"
@@ -32,15 +33,24 @@ private:
   std::size_t count_ = 0;
 };
 
+/// Where the granules around a cell are brought together.
+class NearScratch {
+public:
+  kernels::CoarseScratch room_for(std::size_t entries);
+
+private:
+  std::vector<float> coordinates_;
+  std::vector<std::uint32_t> offsets_;
+  std::size_t entries_ = 0;
+};
+
 /// Granules near one wall.
 struct WallList {
   std::vector<std::uint32_t> granules; ///< padded
   std::size_t count = 0;
 };
 
-/// Pairs by the gap between their surfaces when they were listed: two granules that were a quarter of the skin apart
-/// cannot touch before both together have come a quarter of the skin nearer. A step tests only the classes that can.
-inline constexpr std::size_t gap_classes = 4;
+using kernels::gap_classes;
 
 struct PairRange {
   std::size_t first = 0;                      ///< in the list
@@ -64,17 +74,19 @@ struct Segment {
   PairList inner;
   PairList boundary; ///< pairs whose second granule is in the next segment
   std::vector<WallList> walls;
-  std::vector<std::uint32_t> outside;      ///< granules whose centre is beyond a wall, or not finite
-  std::size_t candidates = 0;              ///< without padding
-  std::vector<kernels::RowPair> touching;  ///< scratch of the sweep
-  std::vector<kernels::RowPair> far_pairs; ///< scratch of the build
+  std::vector<std::uint32_t> outside;     ///< granules whose centre is beyond a wall, or not finite
+  std::size_t candidates = 0;             ///< without padding
+  std::vector<kernels::RowPair> touching; ///< scratch of the sweep
+  PairList far_pairs;                     ///< scratch of the build
+  NearScratch near;                       ///< scratch of the build
   std::vector<std::uint32_t> touching_wall;
 };
 
 class VerletList {
 public:
   struct Search {
-    kernels::CandidateKernel* kernel = nullptr;
+    kernels::CandidateKernel* kernel = nullptr; ///< for all pairs
+    kernels::CoarseKernel* coarse = nullptr;    ///< for the grid
     kernels::SplitKernel* split = nullptr;
     bool alike = true;
     double largest_radius = 0.0; ///< m
@@ -95,8 +107,9 @@ public:
 
 private:
   void cut_into_segments(std::uint32_t granules);
-  void search_all(Granules& granules, const std::vector<Wall>& walls, const Search& search, const Team& team);
-  void search_segment(Segment& segment, int first_layer, int last_layer, const kernels::CandidateArguments& arguments,
+  void search_all(Granules& granules, const Vector3& size, const std::vector<Wall>& walls, const Search& search,
+                  const Team& team);
+  void search_segment(Segment& segment, int first_layer, int last_layer, const kernels::CoarseArguments& arguments,
                       const Search& search, const Granules& granules);
 
   CellGrid grid_;

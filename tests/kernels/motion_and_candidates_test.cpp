@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -194,7 +195,7 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
             }
 }
 
-TEST_CASE("candidate kernels: every instruction set finds exactly the pairs within reach") {
+TEST_CASE("candidate kernels: every instruction set finds exactly the pairs within reach, in float all of them") {
   Random random{std::mt19937_64(77)};
   const std::uint32_t count = 203;
   // A vector load at the end of a range may look past it: what stands there must not matter.
@@ -205,6 +206,16 @@ TEST_CASE("candidate kernels: every instruction set finds exactly the pairs with
     z[i] = random(0.0, 0.01);
     radius[i] = random(0.5e-3, 2.0e-3);
   }
+  const auto in_float = [](const std::vector<double>& metres) {
+    std::vector<float> millimetres;
+    for (const double value : metres) millimetres.push_back(static_cast<float>(1.0e3 * value));
+    return millimetres;
+  };
+  const std::vector<float> coarse_x = in_float(x), coarse_y = in_float(y), coarse_z = in_float(z),
+                           coarse_radius = in_float(radius);
+  std::array<std::vector<float>, 4> near;
+  for (auto& coordinate : near) coordinate.resize(2 * count);
+  std::vector<std::uint32_t> offsets(2 * count);
   const double skin = 0.2e-3, common = 1.2e-3;
   for (const InstructionSet machine : machines())
     for (const bool alike : {true, false})
@@ -240,9 +251,32 @@ TEST_CASE("candidate kernels: every instruction set finds exactly the pairs with
         arguments.radius = alike ? nullptr : radius.data();
         arguments.reach = alike ? 2.0 * common + skin : skin;
         std::vector<RowPair> room(count * count + list_padding);
-        const RowPair* end = candidate_kernel_for(machine, alike)(arguments, own, own_end, ranges.data(),
-                                                                  static_cast<int>(ranges.size()), room.data());
+        RowPair* end = candidate_kernel_for(machine, alike)(arguments, own, own_end, ranges.data(),
+                                                            static_cast<int>(ranges.size()), room.data());
         for (const RowPair* pair = room.data(); pair != end; ++pair) found.insert({pair->first(), pair->second()});
         CHECK(found == expected);
+
+        // In millimetres, with a margin: no pair less, none twice, and none more than the margin allows.
+        CoarseArguments coarse;
+        coarse.x = coarse_x.data();
+        coarse.y = coarse_y.data();
+        coarse.z = coarse_z.data();
+        coarse.radius = alike ? nullptr : coarse_radius.data();
+        const double margin = 1.0e-8;
+        coarse.reach = static_cast<float>(1.0e3 * (arguments.reach + margin));
+        coarse.scratch = {near[0].data(), near[1].data(), near[2].data(), near[3].data(), offsets.data()};
+        // Nor what an earlier cell has left there.
+        for (auto& coordinate : near) std::fill(coordinate.begin(), coordinate.end(), trial % 2 == 0 ? 1e30F : 0.0F);
+        std::fill(offsets.begin(), offsets.end(), ~0U);
+        end = coarse_kernel_for(machine, alike)(coarse, own, own_end, ranges.data(), static_cast<int>(ranges.size()),
+                                                room.data());
+        found.clear();
+        for (const RowPair* pair = room.data(); pair != end; ++pair) found.insert({pair->first(), pair->second()});
+        for (const auto& pair : expected) CHECK(found.count(pair) == 1);
+        for (const auto& [i, j] : found) {
+          CHECK(found.count({i, j}) == 1);
+          CHECK(std::hypot(x[i] - x[j], y[i] - y[j], z[i] - z[j]) <
+                arguments.reach + (alike ? 0.0 : radius[i] + radius[j]) + 2.0 * margin);
+        }
       }
 }

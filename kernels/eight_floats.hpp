@@ -1,0 +1,48 @@
+// Eight lanes of float, whatever the instruction set: the vocabulary of the coarse search. Portably here, by AVX2 in
+// eight_floats_avx2.hpp.
+//
+//   Vector, width, load and store (unaligned), broadcast, and the operators of the compiler's vector extension
+//   fma(a, b, c) = a b + c                     fused where the instruction set has it
+//   less(a, b)                                 one bit per lane
+//   store_offsets(to, row)                     those of the eight rows from `row`
+//   select_partners(first, offsets, mask, to)  the pairs of row `first` and the marked offsets; returns their number.
+//                                              Writes eight.
+#pragma once
+
+#include "kernels/simd.hpp"
+
+namespace grandamp::kernels {
+
+struct EightFloats {
+  typedef float Vector __attribute__((vector_size(32)));
+  static constexpr std::uint32_t width = 8;
+
+  GRANDAMP_INLINE Vector load(const float* p) {
+    Vector v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+  }
+  GRANDAMP_INLINE void store(float* p, Vector v) { __builtin_memcpy(p, &v, sizeof v); }
+  GRANDAMP_INLINE Vector broadcast(float x) { return Vector{x, x, x, x, x, x, x, x}; }
+  GRANDAMP_INLINE unsigned less(Vector a, Vector b) {
+    const auto marked = a < b;
+    int mask = 0;
+    for (unsigned lane = 0; lane < width; ++lane) mask |= marked[lane] & (1 << lane);
+    return static_cast<unsigned>(mask);
+  }
+  GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return a * b + c; }
+  GRANDAMP_INLINE void store_offsets(std::uint32_t* to, std::uint32_t row) {
+    for (unsigned lane = 0; lane < width; ++lane) to[lane] = (row + lane) << offset_bits;
+  }
+  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, const std::uint32_t* offsets, unsigned mask,
+                                           RowPair* to) {
+    unsigned n = 0;
+    for (unsigned lane = 0; lane < width; ++lane) {
+      to[n] = {first << offset_bits, offsets[lane]};
+      n += (mask >> lane) & 1U;
+    }
+    return n;
+  }
+};
+
+} // namespace grandamp::kernels

@@ -1,0 +1,58 @@
+// Eight lanes of float by AVX2; for AVX-512 too, where ranges are too short for more.
+#pragma once
+
+#include "kernels/eight_floats.hpp"
+
+#include <immintrin.h>
+
+namespace grandamp::kernels {
+
+/// For each of 256 masks the marked lanes in turn, in the order that unpacking in halves wants: 0 1 4 5 2 3 6 7. A row
+/// is eight bytes.
+struct EightSelectTable {
+  std::uint64_t row[256];
+};
+constexpr EightSelectTable make_eight_select_table() {
+  constexpr unsigned place[8] = {0, 1, 4, 5, 2, 3, 6, 7}; // of the n-th marked lane
+  EightSelectTable table{};
+  for (unsigned mask = 0; mask < 256; ++mask) {
+    unsigned n = 0;
+    for (unsigned lane = 0; lane < 8; ++lane)
+      if ((mask >> lane & 1U) != 0) table.row[mask] |= std::uint64_t{lane} << 8 * place[n++];
+  }
+  return table;
+}
+alignas(64) inline constexpr EightSelectTable eight_select_table = make_eight_select_table();
+
+struct EightFloatsAvx2 {
+  typedef float Vector __attribute__((vector_size(32)));
+  static constexpr std::uint32_t width = 8;
+
+  GRANDAMP_INLINE Vector load(const float* p) { return _mm256_loadu_ps(p); }
+  GRANDAMP_INLINE void store(float* p, Vector v) { _mm256_storeu_ps(p, v); }
+  GRANDAMP_INLINE Vector broadcast(float x) { return _mm256_set1_ps(x); }
+  GRANDAMP_INLINE unsigned less(Vector a, Vector b) {
+    return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
+  }
+  GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return _mm256_fmadd_ps(a, b, c); }
+  GRANDAMP_INLINE void store_offsets(std::uint32_t* to, std::uint32_t row) {
+    constexpr int next = 1 << offset_bits;
+    const __m256i first = _mm256_set1_epi32(static_cast<int>(row << offset_bits));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                        _mm256_add_epi32(first, _mm256_setr_epi32(0, next, 2 * next, 3 * next, 4 * next, 5 * next,
+                                                                  6 * next, 7 * next)));
+  }
+  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, const std::uint32_t* offsets, unsigned mask,
+                                           RowPair* to) {
+    const __m256i firsts = _mm256_set1_epi32(static_cast<int>(first << offset_bits));
+    const __m256i order =
+        _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(eight_select_table.row + mask)));
+    const __m256i marked =
+        _mm256_permutevar8x32_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(offsets)), order);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_unpacklo_epi32(firsts, marked));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to + 4), _mm256_unpackhi_epi32(firsts, marked));
+    return static_cast<unsigned>(__builtin_popcount(mask));
+  }
+};
+
+} // namespace grandamp::kernels

@@ -1,0 +1,126 @@
+// The list that the grid finds, against a look at every pair.
+#include "kernels/dispatch.hpp"
+#include "solver/verlet_list.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+using namespace grandamp;
+
+namespace {
+
+using Pair = std::pair<std::uint32_t, std::uint32_t>; ///< identities, the smaller one first
+constexpr double radius = 1.0e-3, skin = 0.3e-3;
+
+double radius_of(std::uint32_t id, bool alike) {
+  return alike ? radius : radius * (0.4 + 0.6 * (id % 7) / 6.0);
+}
+
+/// Places in the box's far corner, where float is worst, in a cluster whose neighbours are often just within reach of
+/// each other, or just beyond.
+Granules make_granules(std::uint32_t count, const Vector3& size, bool alike) {
+  Granules granules(count, {});
+  std::mt19937_64 engine(11);
+  const auto random = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double r = radius_of(i, alike);
+    Vector3 at;
+    if (i % 2 == 0 || alike == (i % 3 == 0)) {
+      for (std::size_t k = 0; k < 3; ++k) at[k] = size[k] - random(0.0, std::min(size[k], 20.0e-3));
+    } else {
+      const kernels::PositionRow& other = granules.position[i - 1];
+      const double beyond[] = {-1e-9, 1e-9, -1e-12, 1e-12};
+      const double reach = (r + other.radius + skin) * (1.0 + beyond[i / 2 % 4]);
+      Vector3 way{random(-1.0, 1.0), random(-1.0, 1.0), random(-1.0, 1.0)};
+      const double length = std::hypot(way[0], way[1], way[2]);
+      const double from[] = {other.x, other.y, other.z};
+      for (std::size_t k = 0; k < 3; ++k) at[k] = from[k] + way[k] * reach / length;
+    }
+    granules.position[i] = {at[0], at[1], at[2], r};
+    granules.id[i] = i;
+    granules.population[i] = 0;
+  }
+  granules.set_ghosts();
+  return granules;
+}
+
+/// Square of the distance, as exactly as the list has to know it.
+double square(const kernels::PositionRow& a, const kernels::PositionRow& b) {
+  const double x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
+  return std::fma(z, z, std::fma(y, y, x * x));
+}
+
+} // namespace
+
+TEST_CASE("Verlet list: the grid finds every pair within reach, no other, and the class of its gap") {
+  const Team team(1);
+  using kernels::InstructionSet;
+  for (const InstructionSet set : {InstructionSet::generic, InstructionSet::avx2, InstructionSet::avx512})
+    for (const bool alike : {true, false})
+      for (const Vector3& size : {Vector3{0.03, 0.02, 0.04}, Vector3{0.003, 0.2, 0.02}, Vector3{50.0, 0.02, 200.0}}) {
+        if (!kernels::available(set)) continue;
+        CAPTURE(std::string(kernels::name(set)));
+        CAPTURE(alike);
+        CAPTURE(size[0]);
+        const std::uint32_t count = 1500;
+        Granules granules = make_granules(count, size, alike);
+        VerletList::Search search;
+        search.kernel = kernels::candidate_kernel_for(set, alike);
+        search.coarse = kernels::coarse_kernel_for(set, alike);
+        search.split = kernels::split_kernel_for(set, alike);
+        search.alike = alike;
+        search.largest_radius = radius;
+        search.skin = skin;
+        search.cell_length = 2.0 * radius + skin;
+        VerletList list;
+        list.build(granules, size, {}, search, team);
+
+        std::map<Pair, std::size_t> found; // and its class
+        std::size_t listed = 0;
+        for (const Segment& segment : list.segments())
+          for (const Block& block : segment.blocks)
+            for (const auto& [pairs, range] :
+                 {std::pair{&segment.inner, block.inner}, std::pair{&segment.boundary, block.boundary}}) {
+              std::size_t c = 0;
+              for (std::size_t k = range.first; k < range.end.back(); ++k) {
+                while (k >= range.end[c]) ++c;
+                const kernels::RowPair pair = pairs->data()[k];
+                if (pair.first() >= count) continue;
+                ++listed;
+                found[std::minmax(granules.id[pair.first()], granules.id[pair.second()])] = c;
+              }
+            }
+        CHECK(listed == found.size());
+        CHECK(listed == list.candidates());
+
+        std::size_t wanted = 0, wrong = 0, wrong_class = 0;
+        const bool fused = set != InstructionSet::generic;
+        for (std::uint32_t i = 0; i < count; ++i)
+          for (std::uint32_t j = i + 1; j < count; ++j) {
+            const kernels::PositionRow &a = granules.position[i], &b = granules.position[j];
+            const auto within = [&](double share) {
+              const double reach = share * skin + (alike ? 2.0 * radius : 0.0) + (alike ? 0.0 : a.radius + b.radius);
+              return square(a, b) < reach * reach;
+            };
+            // Without a fused multiply-add a pair on the very edge may fall either way.
+            const double reach = skin + (alike ? 2.0 * radius : a.radius + b.radius);
+            if (!fused && std::abs(square(a, b) / (reach * reach) - 1.0) < 1e-14) continue;
+            const auto it = found.find(std::minmax(granules.id[i], granules.id[j]));
+            if (within(1.0)) ++wanted;
+            if (within(1.0) != (it != found.end()))
+              ++wrong;
+            else if (it != found.end()) {
+              const auto c = static_cast<double>(it->second);
+              if ((c > 0.0 && within(0.25 * c)) || !within(0.25 * (c + 1.0))) ++wrong_class;
+            }
+          }
+        CHECK(wanted > 700);
+        CHECK(wrong == 0);
+        CHECK(wrong_class <= (fused ? 0U : 2U));
+      }
+}
