@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t format_version = 5;
+constexpr std::int64_t format_version = 6;
 
 template <class SampleType, class Field> void visit_sample(SampleType& s, const std::string& group, Field&& field) {
   const auto one = [&](const char* name, const char* units, const char* description, auto& value) {

@@ -10,12 +10,14 @@
 
 namespace grandamp::kernels {
 
-/// Forces by kind, for the ledger.
+/// Forces by kind, for the ledger. Few granules touch a wall: rows of walls that are not marked are zero, and are
+/// neither read nor cleared.
 struct KindRows {
   DampingRow* damping_granule = nullptr;
   DampingRow* damping_wall = nullptr;
   ForceRow* friction_granule = nullptr;
   ForceRow* friction_wall = nullptr;
+  std::uint8_t* touches_wall = nullptr;
 };
 
 /// The arrays of a region's granules. `ghost` and ghost + 1 are two rows past the last granule, far from everything

@@ -92,16 +92,15 @@ template <class S, MotionEffects E> struct MotionLoop {
     AccelerationRow& acceleration = a.granules.acceleration[i];
     const KindRows &now = a.granules.kinds, &then = a.granules.kinds_before;
     const Motion moved = at_once(mean, gained, acceleration.velocity);
-    take(lost.normal_granule, early.normal_granule, now.damping_granule[i].force, then.damping_granule[i].force, moved);
-    take(lost.normal_wall, early.normal_wall, now.damping_wall[i].force, then.damping_wall[i].force, moved);
-    take(lost.friction_granule, early.friction_granule, now.friction_granule[i].force, then.friction_granule[i].force,
-         moved);
-    take(lost.friction_wall, early.friction_wall, now.friction_wall[i].force, then.friction_wall[i].force, moved);
-    if constexpr (E.rotates()) {
-      const Motion turned = at_once(mean_spin, spun, acceleration.surface_spin);
-      take(lost.friction_granule, early.friction_granule, now.friction_granule[i].turn, then.friction_granule[i].turn,
-           turned);
-      take(lost.friction_wall, early.friction_wall, now.friction_wall[i].turn, then.friction_wall[i].turn, turned);
+    Motion turned;
+    if constexpr (E.rotates()) turned = at_once(mean_spin, spun, acceleration.surface_spin);
+    take(lost.normal_granule, early.normal_granule, now.damping_granule[i], then.damping_granule[i], moved);
+    take(lost.friction_granule, early.friction_granule, now.friction_granule[i], then.friction_granule[i], moved,
+         turned);
+    if ((now.touches_wall[i] | then.touches_wall[i]) != 0) {
+      take(lost.normal_wall, early.normal_wall, now.damping_wall[i], then.damping_wall[i], moved);
+      take(lost.friction_wall, early.friction_wall, now.friction_wall[i], then.friction_wall[i], moved, turned);
+      then.touches_wall[i] = 0;
     }
   }
 
@@ -121,6 +120,13 @@ template <class S, MotionEffects E> struct MotionLoop {
   }
 
   /// The rows of the step before come out cleared: they are the next step's.
+  void take(Row& sum, Row& before, const DampingRow& now, DampingRow& then, const Motion& moved) {
+    take(sum, before, now.force, then.force, moved);
+  }
+  void take(Row& sum, Row& before, const ForceRow& now, ForceRow& then, const Motion& moved, const Motion& turned) {
+    take(sum, before, now.force, then.force, moved);
+    if constexpr (E.rotates()) take(sum, before, now.turn, then.turn, turned);
+  }
   void take(Row& sum, Row& before, const double* now, double* then, const Motion& motion) {
     const Row force = S::row_load(now), last_force = S::row_load(then);
     sum = S::row_fnma(force, motion.now, sum);

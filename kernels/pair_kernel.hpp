@@ -113,7 +113,7 @@ GRANDAMP_INLINE auto positions(const PositionRow* position, const RowPair* pairs
 }
 
 /// Asks memory for rows, two at a time.
-template <class S> class RowsAhead {
+template <class S, bool ledger> class RowsAhead {
 public:
   explicit RowsAhead(const PairArguments& a)
       : granules_(a.granules), next_(a.ahead[0].first), last_(a.ahead[0].last), then_(a.ahead[1]) {}
@@ -130,7 +130,9 @@ public:
     for (std::uint32_t row = next_; row < next_ + 2; ++row) {
       __builtin_prefetch(granules_.motion + row, 1);
       __builtin_prefetch(granules_.force + row, 1);
+      if constexpr (ledger) __builtin_prefetch(granules_.kinds.friction_granule + row, 1);
     }
+    if constexpr (ledger) __builtin_prefetch(granules_.kinds.damping_granule + next_, 1);
     next_ += 2;
     return true;
   }
@@ -145,7 +147,7 @@ private:
 /// written here could otherwise be a part of it.
 template <class S, ContactEffects E>
 GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const RowPair* pairs, std::size_t count,
-                                     RowsAhead<S>& ahead) {
+                                     RowsAhead<S, E.ledger()>& ahead) {
   using Vector = typename S::Vector;
   constexpr bool alike = E.variety == Variety::alike;
   constexpr std::size_t at_once = list_padding;
@@ -398,7 +400,7 @@ template <class S, ContactEffects E> struct PairLoop {
 template <class S, ContactEffects E> void pair_kernel(const PairArguments& arguments, ContactResult& result) {
   const PairArguments a = arguments; // where no row that is stored can be a part of it
   PairLoop<S, E> loop{.a = a, .max_overlap = S::broadcast(result.max_overlap)};
-  RowsAhead<typename S::Double> ahead(a);
+  RowsAhead<typename S::Double, E.ledger()> ahead(a);
   for (std::size_t begin = 0; begin < a.count; begin += pair_chunk) {
     const std::size_t left = a.count - begin;
     const std::size_t n =

@@ -148,6 +148,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       for (unsigned lane = 0; lane < lanes; ++lane) {
         double* i = a.granules.kinds.damping_wall[list[lane]].force;
         S::row_store(i, S::row_load(i) + damping[lane]);
+        a.granules.kinds.touches_wall[list[lane]] = 1;
       }
     }
     if constexpr (E.ledger() && E.rubs()) {
@@ -157,6 +158,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
         ForceRow& i = a.granules.kinds.friction_wall[list[lane]];
         S::row_store(i.force, S::row_load(i.force) + rubbing[lane]);
         if constexpr (E.rotates()) S::row_store(i.turn, S::row_load(i.turn) + turns[lane]);
+        a.granules.kinds.touches_wall[list[lane]] = 1;
       }
     }
   }

@@ -13,12 +13,13 @@ template <class T> void clear_rows(RowArray<T>& rows, std::uint32_t first, std::
 } // namespace
 
 ForcesByKind::ForcesByKind(std::size_t rows)
-    : damping_granule(rows), damping_wall(rows), friction_granule(rows), friction_wall(rows) {
+    : damping_granule(rows), damping_wall(rows), friction_granule(rows), friction_wall(rows), touches_wall(rows) {
   clear(0, static_cast<std::uint32_t>(rows));
 }
 
 kernels::KindRows ForcesByKind::arrays() {
-  return {damping_granule.data(), damping_wall.data(), friction_granule.data(), friction_wall.data()};
+  return {damping_granule.data(), damping_wall.data(), friction_granule.data(), friction_wall.data(),
+          touches_wall.data()};
 }
 
 void ForcesByKind::clear(std::uint32_t first, std::uint32_t last) {
@@ -26,14 +27,16 @@ void ForcesByKind::clear(std::uint32_t first, std::uint32_t last) {
   clear_rows(damping_wall, first, last);
   clear_rows(friction_granule, first, last);
   clear_rows(friction_wall, first, last);
+  clear_rows(touches_wall, first, last);
 }
 
 void ForcesByKind::take(const ForcesByKind& from, const std::uint32_t* order, std::uint32_t first, std::uint32_t last) {
   if (damping_granule.size() == 0) return;
   for (std::uint32_t k = first; k < last; ++k) {
     damping_granule[k] = from.damping_granule[order[k]];
-    damping_wall[k] = from.damping_wall[order[k]];
     friction_granule[k] = from.friction_granule[order[k]];
+    touches_wall[k] = from.touches_wall[order[k]];
+    damping_wall[k] = from.damping_wall[order[k]];
     friction_wall[k] = from.friction_wall[order[k]];
   }
 }
@@ -44,6 +47,7 @@ ForcesByKind ForcesByKind::copy() const {
   other.damping_wall = damping_wall.copy();
   other.friction_granule = friction_granule.copy();
   other.friction_wall = friction_wall.copy();
+  other.touches_wall = touches_wall.copy();
   return other;
 }
 

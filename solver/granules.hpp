@@ -20,6 +20,7 @@ struct GranuleStorage {
 struct ForcesByKind {
   RowArray<kernels::DampingRow> damping_granule, damping_wall;
   RowArray<kernels::ForceRow> friction_granule, friction_wall;
+  RowArray<std::uint8_t> touches_wall;
 
   ForcesByKind() = default;
   explicit ForcesByKind(std::size_t rows);

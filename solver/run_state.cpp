@@ -57,11 +57,14 @@ void check_granules(const RunState& s, const Plan& plan) {
   demand_length("granules/velocity_rate", s.velocity_rate.size(), ledger);
   demand_length("granules/surface_spin_rate", s.surface_spin_rate.size(), ledger);
   demand_length("granules/damping_granule", s.damping_granule.size(), ledger);
-  demand_length("granules/damping_wall", s.damping_wall.size(), ledger);
   demand_length("granules/friction_granule", s.friction_granule.size(), ledger);
   demand_length("granules/friction_granule_turn", s.friction_granule_turn.size(), ledger);
-  demand_length("granules/friction_wall", s.friction_wall.size(), ledger);
-  demand_length("granules/friction_wall_turn", s.friction_wall_turn.size(), ledger);
+  for (std::size_t k = 0; k < s.at_wall.size(); ++k)
+    if (s.at_wall[k] >= (ledger > 0 ? count : 0) || (k > 0 && s.at_wall[k] <= s.at_wall[k - 1]))
+      refuse(fmt::format("at_wall/row holds {} where rows of granules rise", s.at_wall[k]));
+  demand_length("at_wall/damping", s.damping_wall.size(), 3 * s.at_wall.size());
+  demand_length("at_wall/friction", s.friction_wall.size(), 3 * s.at_wall.size());
+  demand_length("at_wall/friction_turn", s.friction_wall_turn.size(), 3 * s.at_wall.size());
   const bool coulomb = plan.scene.contact.friction == FrictionLaw::coulomb;
   demand_length("granules/friction_share", s.friction_share.size(), coulomb ? count : 0);
   for (const double share : s.friction_share)

@@ -24,9 +24,13 @@ template <class Rows, class State, class Use> void each_part(Rows& granules, Sta
   use(granules.acceleration, &AccelerationRow::surface_spin, s.surface_spin_rate);
   auto& kinds = granules.kinds_before;
   use(kinds.damping_granule, &DampingRow::force, s.damping_granule);
-  use(kinds.damping_wall, &DampingRow::force, s.damping_wall);
   use(kinds.friction_granule, &ForceRow::force, s.friction_granule);
   use(kinds.friction_granule, &ForceRow::turn, s.friction_granule_turn);
+}
+
+/// The same for what is held of the granules at walls alone.
+template <class Kinds, class State, class Use> void each_wall_part(Kinds& kinds, State& s, Use use) {
+  use(kinds.damping_wall, &DampingRow::force, s.damping_wall);
   use(kinds.friction_wall, &ForceRow::force, s.friction_wall);
   use(kinds.friction_wall, &ForceRow::turn, s.friction_wall_turn);
 }
@@ -102,6 +106,15 @@ void Stepper::save(RunState& s) const {
     if (rows.size() == 0) return;
     values.reserve(3 * std::size_t{count});
     for (std::uint32_t i = 0; i < count; ++i)
+      values.insert(values.end(), std::begin(rows[i].*part), std::end(rows[i].*part));
+  });
+  s.at_wall.clear();
+  const ForcesByKind& kinds = granules_.kinds_before;
+  for (std::uint32_t i = 0; i < (kinds.touches_wall.size() > 0 ? count : 0); ++i)
+    if (kinds.touches_wall[i] != 0) s.at_wall.push_back(i);
+  each_wall_part(kinds, s, [&s](const auto& rows, auto part, std::vector<double>& values) {
+    values.clear();
+    for (const std::uint32_t i : s.at_wall)
       values.insert(values.end(), std::begin(rows[i].*part), std::end(rows[i].*part));
   });
   s.friction_share.clear();
@@ -195,6 +208,11 @@ void Stepper::restore_granules(const RunState& s) {
   each_part(granules_, s, [](auto& rows, auto part, const std::vector<double>& values) {
     for (std::size_t i = 0; i < values.size() / 3; ++i)
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::begin(rows[i].*part));
+  });
+  for (const std::uint32_t i : s.at_wall) granules_.kinds_before.touches_wall[i] = 1;
+  each_wall_part(granules_.kinds_before, s, [&s](auto& rows, auto part, const std::vector<double>& values) {
+    for (std::size_t k = 0; k < s.at_wall.size(); ++k)
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * k), 3, std::begin(rows[s.at_wall[k]].*part));
   });
   granules_.set_ghosts();
 }

@@ -55,7 +55,22 @@ double tolerance_of(ContactEffects effects) {
 }
 constexpr double tolerance = 1.0e-10;
 
+/// The granules that touch a wall are marked, and no others have walls' rows.
+void check_marks(const Bed& bed, const Expected& expected, ContactEffects effects, bool wall) {
+  if (!effects.ledger() || (!effects.damped() && !effects.rubs())) return;
+  for (std::size_t i = 0; i < expected.touching.size(); ++i) {
+    const bool touches = wall && expected.touching[i] > 0;
+    CHECK((bed.touches_wall[i] != 0) == touches);
+    for (std::size_t k = 0; k < 3 && !touches; ++k) {
+      CHECK(bed.damping_wall[i].force[k] == 0.0);
+      CHECK(bed.friction_wall[i].force[k] == 0.0);
+      CHECK(bed.friction_wall[i].turn[k] == 0.0);
+    }
+  }
+}
+
 void check_rows(const Bed& bed, const Expected& expected, ContactEffects effects, bool wall) {
+  check_marks(bed, expected, effects, wall);
   const double within = tolerance_of(effects);
   for (std::size_t i = 0; i < expected.touching.size() && effects.counts(); ++i) {
     CHECK(bed.force[i].touching == expected.touching[i]);

@@ -53,6 +53,12 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
               fill(bed.damping_wall_before, 0.45, false);
               fill(bed.friction_granule_before, 0.55, rotates);
               fill(bed.friction_wall_before, 0.65, rotates);
+              for (std::uint32_t i = 0; i < bed.count(); ++i) { // at a wall now, before, both, or neither
+                bed.touches_wall[i] = i % 2;
+                bed.touched_wall_before[i] = i / 2 % 2;
+                if (bed.touches_wall[i] == 0) bed.damping_wall[i] = {}, bed.friction_wall[i] = {};
+                if (bed.touched_wall_before[i] == 0) bed.damping_wall_before[i] = {}, bed.friction_wall_before[i] = {};
+              }
               for (AccelerationRow& row : bed.acceleration)
                 for (int k = 0; k < 3; ++k) {
                   row.velocity[k] = random(-1.0e4, 1.0e4);
@@ -144,6 +150,10 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                             std::abs(bed.friction_granule_before[i].turn[k]) +
                             std::abs(bed.friction_wall_before[i].force[k]) +
                             std::abs(bed.friction_wall_before[i].turn[k]);
+                }
+                if (effects.ledger()) {
+                  CHECK(bed.touched_wall_before[i] == 0);
+                  CHECK(bed.touches_wall[i] == untouched.touches_wall[i]);
                 }
                 if (effects.ledger())
                   for (std::size_t k = 0; k < 3; ++k) {

@@ -62,7 +62,7 @@ struct Bed {
   std::vector<ForceRow> force, friction_granule, friction_wall, friction_granule_before, friction_wall_before;
   std::vector<DampingRow> damping_granule, damping_wall, damping_granule_before, damping_wall_before;
   std::vector<AccelerationRow> acceleration;
-  std::vector<std::uint8_t> population;
+  std::vector<std::uint8_t> population, touches_wall, touched_wall_before;
   std::size_t populations = 3;
   std::vector<reference::Law> laws; ///< populations x populations; of walls: the first row
   std::vector<LawRow> rows;
@@ -83,9 +83,10 @@ struct Bed {
     a.predicted = motion.data();
     a.force = force.data();
     a.population = population.data();
-    a.kinds = {damping_granule.data(), damping_wall.data(), friction_granule.data(), friction_wall.data()};
+    a.kinds = {damping_granule.data(), damping_wall.data(), friction_granule.data(), friction_wall.data(),
+               touches_wall.data()};
     a.kinds_before = {damping_granule_before.data(), damping_wall_before.data(), friction_granule_before.data(),
-                      friction_wall_before.data()};
+                      friction_wall_before.data(), touched_wall_before.data()};
     a.acceleration = acceleration.data();
     a.ghost = static_cast<std::uint32_t>(count());
     return a;
@@ -182,6 +183,8 @@ inline Bed make_bed(ContactEffects effects, unsigned seed) {
   bed.friction_wall_before.resize(count + 2);
   bed.damping_granule_before.resize(count + 2);
   bed.damping_wall_before.resize(count + 2);
+  bed.touches_wall.resize(count + 2);
+  bed.touched_wall_before.resize(count + 2);
   return bed;
 }
 
