@@ -66,7 +66,7 @@ void demand_message(const std::string& message) {
   demand(!message.empty(), "there is a message");
 }
 
-/// Two granules, one pair, one row near the first wall, one loaded spring.
+/// Two granules, one pair, one row near the first wall and touching it, one loaded spring.
 Checkpoint good_checkpoint(const Plan& plan) {
   Checkpoint checkpoint;
   checkpoint.version = "0";
@@ -87,6 +87,11 @@ Checkpoint good_checkpoint(const Plan& plan) {
   s.inverse_mass = {2.0e5, 2.0e5};
   s.velocity = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
   s.surface_spin = {0.5, 0.4, 0.3, 0.2, 0.1, 0.0};
+  for (auto* ledger :
+       {&s.velocity_rate, &s.surface_spin_rate, &s.damping_granule, &s.friction_granule, &s.friction_granule_turn})
+    *ledger = s.velocity;
+  s.at_wall = {1};
+  s.damping_wall = s.friction_wall = s.friction_wall_turn = {0.1, 0.2, 0.3};
   s.list.segment_rows = {0, 2};
   s.list.segment_blocks = {1};
   s.list.block_rows = {0, 2};
