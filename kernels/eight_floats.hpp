@@ -14,7 +14,7 @@
 namespace grandamp::kernels {
 
 struct EightFloats {
-  typedef float Vector __attribute__((vector_size(32)));
+  using Vector [[gnu::vector_size(32)]] = float;
   static constexpr std::uint32_t width = 8;
 
   GRANDAMP_INLINE Vector load(const float* p) {

@@ -25,7 +25,7 @@ constexpr EightSelectTable make_eight_select_table() {
 alignas(64) inline constexpr EightSelectTable eight_select_table = make_eight_select_table();
 
 struct EightFloatsAvx2 {
-  typedef float Vector __attribute__((vector_size(32)));
+  using Vector [[gnu::vector_size(32)]] = float;
   static constexpr std::uint32_t width = 8;
 
   GRANDAMP_INLINE Vector load(const float* p) { return _mm256_loadu_ps(p); }
