@@ -35,7 +35,8 @@ RowPair* candidate_kernel(const CandidateArguments& a, IndexRange own, std::uint
   return to;
 }
 
-/// Lays the ranges' coordinates side by side, and behind them what is near nobody; returns how many there are.
+/// Lays the ranges' coordinates side by side, and behind them what is near nobody, wherever that is; returns how many
+/// there are.
 template <class S, bool alike>
 std::uint32_t bring_together(const CoarseArguments& a, const CoarseScratch& near, IndexRange own, std::uint32_t own_end,
                              const IndexRange* ranges, int count) {
@@ -54,8 +55,7 @@ std::uint32_t bring_together(const CoarseArguments& a, const CoarseScratch& near
   if (own_end > own.first) bring(own.first, own_end);
   for (int k = 0; k < count; ++k)
     if (ranges[k].last > ranges[k].first) bring(ranges[k].first, ranges[k].last);
-  F::store(near.x + n, F::broadcast(1e18F)); // its square is finite
-  if constexpr (!alike) F::store(near.radius + n, F::broadcast(0.0F));
+  F::store(near.x + n, F::broadcast(__builtin_nanf("")));
   return n;
 }
 
