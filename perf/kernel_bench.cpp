@@ -177,12 +177,7 @@ void build_bench(benchmark::State& state, InstructionSet set, bool alike, int ac
   for (std::uint32_t i = 0; i < bed.granules.count(); ++i) home[i] = bed.granules.position[i];
   const std::vector<Wall> walls = make_walls({.shape = EnclosureShape::box, .size = bed.size});
   VerletList list;
-  VerletList::Search search;
-  search.kernel = kernels::candidate_kernel_for(set, alike);
-  search.coarse = kernels::coarse_kernel_for(set, alike);
-  search.split = kernels::split_kernel_for(set, alike);
-  search.alike = alike;
-  search.largest_radius = radius;
+  VerletList::Search search = VerletList::Search::with(set, alike, radius);
   search.skin = 0.4 * radius;
   search.cell_length = 2.4 * radius;
   const Team team(1);

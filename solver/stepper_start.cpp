@@ -133,11 +133,7 @@ Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa,
   tuner_.least = 0.04 * 2.0 * plan_.largest_radius;
   tuner_.largest = 0.8 * 2.0 * plan_.largest_radius;
   if (plan_.scene.verlet.cell) tuner_.largest = std::min(tuner_.largest, plan_.cell - 2.0 * plan_.largest_radius);
-  search_.alike = contact_effects_.variety == Variety::alike;
-  search_.kernel = kernels::candidate_kernel_for(isa_, search_.alike);
-  search_.coarse = kernels::coarse_kernel_for(isa_, search_.alike);
-  search_.split = kernels::split_kernel_for(isa_, search_.alike);
-  search_.largest_radius = plan_.largest_radius;
+  search_ = VerletList::Search::with(isa_, contact_effects_.variety == Variety::alike, plan_.largest_radius);
 
   touch_ahead_ = plan_.granules * (sizeof(PositionRow) + sizeof(MotionRow) + sizeof(kernels::ForceRow)) > 1U << 20;
 }

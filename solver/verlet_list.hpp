@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kernels/arguments.hpp"
-#include "kernels/search_arguments.hpp"
+#include "kernels/dispatch.hpp"
 #include "solver/cell_grid.hpp"
 #include "solver/profile.hpp"
 #include "solver/walls.hpp"
@@ -92,6 +92,17 @@ public:
     double largest_radius = 0.0; ///< m
     double skin = 0.0;           ///< m
     double cell_length = 0.0;    ///< at least 2 largest_radius + skin, m
+
+    /// With the kernels of an instruction set; skin and cells are still to be said.
+    static Search with(kernels::InstructionSet set, bool alike, double largest_radius) {
+      return {kernels::candidate_kernel_for(set, alike),
+              kernels::coarse_kernel_for(set, alike),
+              kernels::split_kernel_for(set, alike),
+              alike,
+              largest_radius,
+              0.0,
+              0.0};
+    }
   };
 
   /// Sorts the granules and lists the pairs and wall candidates. Force rows come out cleared.
