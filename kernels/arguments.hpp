@@ -73,7 +73,7 @@ struct PairArguments {
 };
 
 /// Candidates tested before their contacts are worked off.
-inline constexpr std::size_t pair_chunk = 512;
+inline constexpr std::size_t pair_chunk = 1024;
 
 /// Pairs of the list that are asked of memory before they are tested: each block of the list is a new beginning, which
 /// takes a processor that watches for streams some time to see.

@@ -12,9 +12,10 @@ namespace grandamp::kernels {
 template <class S>
 GRANDAMP_INLINE typename S::Vector coulomb_coefficient(typename S::Vector mu, typename S::Vector normal_force,
                                                        typename S::Vector slip_squared, typename S::Vector cap) {
-  const typename S::Vector tiny = S::broadcast(S::tiny); // keeps 0/0 out; its root is far below any speed
-  // The division need not wait for the normal force.
-  return S::min(mu * S::abs(normal_force) * (S::broadcast(1.0) / S::sqrt(slip_squared + tiny)), cap);
+  // The tiny square keeps 0/0 out; its root is far below any speed. The division waits neither for the root nor for the
+  // normal force.
+  const typename S::Vector square = slip_squared + S::broadcast(S::tiny);
+  return S::min(mu * S::abs(normal_force) * (S::broadcast(1.0) / square * S::sqrt(square)), cap);
 }
 
 /// 1/(1 + n) for a granule that had n contacts a step ago, 1/2 if it had none: passive as long as n does not more than

@@ -144,7 +144,9 @@ private:
 };
 
 /// Moves the pairs that touch to the scratch list; returns their number. `a` must be the caller's own copy: what is
-/// written here could otherwise be a part of it.
+/// written here could otherwise be a part of it. First all marks, then what is marked: where a pair is stored depends
+/// on the marks before it, and a processor that does not let loads overtake stores of unknown address would wait with
+/// the next pairs' rows for each of them.
 template <class S, ContactEffects E>
 GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const RowPair* pairs, std::size_t count,
                                      RowsAhead<S, E.ledger()>& ahead) {
@@ -153,20 +155,24 @@ GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const RowPair* pair
   constexpr std::size_t at_once = list_padding;
   const PositionRow* position = a.granules.position;
   const Vector twice = S::broadcast(2.0 * a.radius);
-  RowPair* to = a.touching;
+  std::uint8_t marks[pair_chunk / S::width];
+  std::uint8_t* mark = marks;
   for (std::size_t k = 0; k < count; k += at_once) {
     for (std::size_t part = k; part < k + at_once; part += S::width) {
-      const RowPair* here = pairs + part;
       Vector x, y, z, radii;
-      difference<S, alike>(positions(position, here), twice, x, y, z, radii);
+      difference<S, alike>(positions(position, pairs + part), twice, x, y, z, radii);
       const Vector square = S::fma(z, z, S::fma(y, y, x * x));
-      const unsigned mask = S::less(square, radii * radii);
-      if constexpr (E.remembers())
-        select_slots<S>(static_cast<std::size_t>(here - a.pairs), mask, a.springs.slots + (to - a.touching));
-      to += S::select(here, mask, to);
+      *mark++ = static_cast<std::uint8_t>(S::less(square, radii * radii));
     }
     ahead.ask();
     __builtin_prefetch(pairs + k + list_ahead);
+  }
+  RowPair* to = a.touching;
+  for (std::size_t k = 0; k < count; k += S::width) {
+    const unsigned mask = marks[k / S::width];
+    if constexpr (E.remembers())
+      select_slots<S>(static_cast<std::size_t>(pairs + k - a.pairs), mask, a.springs.slots + (to - a.touching));
+    to += S::select(pairs + k, mask, to);
   }
   return static_cast<std::size_t>(to - a.touching);
 }
@@ -182,36 +188,38 @@ template <class S, ContactEffects E> struct PairLoop {
   Vector max_overlap;
   Vector max_closing = S::broadcast(0.0);
 
-  /// From i to j, the distance, the sum of the radii, and by how much they exceed it.
-  void approach(const RowPair* pairs, Vector& x, Vector& y, Vector& z, Vector& distance, Vector& radii,
+  /// From i to j, the distance and its square, the sum of the radii, and by how much they exceed it.
+  void approach(const RowPair* pairs, Vector& x, Vector& y, Vector& z, Vector& square, Vector& distance, Vector& radii,
                 Vector& overlap) const {
     if constexpr (E.precision == Precision::mixed) {
       // An overlap is the small difference of two lengths: float could not tell it. (radii^2 - distance^2) is taken in
       // double, and divided by (radii + distance).
       using D = typename S::Double;
-      typename D::Vector px[2], py[2], pz[2], sum[2], square[2], gap[2];
+      typename D::Vector px[2], py[2], pz[2], sum[2], squares[2], gap[2];
       for (int half = 0; half < 2; ++half) {
         difference<D, alike>(positions(a.granules.position, pairs + half * D::width), D::broadcast(2.0 * a.radius),
                              px[half], py[half], pz[half], sum[half]);
-        square[half] = D::fma(pz[half], pz[half], D::fma(py[half], py[half], px[half] * px[half]));
-        gap[half] = sum[half] * sum[half] - square[half];
+        squares[half] = D::fma(pz[half], pz[half], D::fma(py[half], py[half], px[half] * px[half]));
+        gap[half] = sum[half] * sum[half] - squares[half];
       }
       x = S::narrow(px);
       y = S::narrow(py);
       z = S::narrow(pz);
       radii = alike ? S::broadcast(2.0 * a.radius) : S::narrow(sum);
-      distance = S::sqrt(S::narrow(square));
+      square = S::narrow(squares);
+      distance = S::sqrt(square);
       overlap = S::max(S::narrow(gap) / (radii + distance), S::broadcast(0.0));
     } else {
       difference<S, alike>(positions(a.granules.position, pairs), S::broadcast(2.0 * a.radius), x, y, z, radii);
-      distance = S::sqrt(S::fma(z, z, S::fma(y, y, x * x)));
+      square = S::fma(z, z, S::fma(y, y, x * x));
+      distance = S::sqrt(square);
       overlap = S::max(radii - distance, S::broadcast(0.0));
     }
   }
 
   void geometry(const RowPair* pairs, unsigned lanes, ContactGeometry<S>& c) {
-    Vector x, y, z, distance, radii;
-    approach(pairs, x, y, z, distance, radii, c.overlap);
+    Vector x, y, z, square, distance, radii;
+    approach(pairs, x, y, z, square, distance, radii, c.overlap);
 
     const MotionRow* motion = a.granules.predicted;
     Row rows[width];
@@ -231,18 +239,18 @@ template <class S, ContactEffects E> struct PairLoop {
                      S::row_load(row_at(motion, pairs[lane].second_offset).surface_spin);
       S::columns(rows, c.sx, c.sy, c.sz, inverse_radius);
     }
-    Vector inverse; // of the distance
+    Vector inverse; // of the distance, by its square: the division need not wait for the root
     if constexpr (alike) {
-      inverse = S::broadcast(1.0) / distance;
+      inverse = S::broadcast(1.0) / square * distance;
       c.lever = distance * S::broadcast(0.5 / a.radius);
       max_overlap = S::max(max_overlap, c.overlap * S::broadcast(1.0 / a.radius));
     } else {
       // One division does for four: the inverse of a product, times all but one of its factors.
-      const Vector lengths = distance * radii, inverses = inverse_mass * inverse_radius;
+      const Vector lengths = square * radii, inverses = inverse_mass * inverse_radius;
       const Vector of_all = S::broadcast(1.0) / (lengths * inverses);
       const Vector of_lengths = of_all * inverses, of_inverses = of_all * lengths;
-      inverse = of_lengths * radii;
-      c.lever = distance * distance * of_lengths;
+      inverse = of_lengths * radii * distance;
+      c.lever = of_lengths * square * distance;
       c.radius = of_inverses * inverse_mass;
       c.mass = of_inverses * inverse_radius;
       // The larger inverse radius is at most the sum: the exact ratio is worked out only where it could be a record.
@@ -396,11 +404,36 @@ template <class S, ContactEffects E> struct PairLoop {
   }
 };
 
+/// Vector by vector of `count` contacts: work(entries of the list, how many of the lanes are used, geometry, forces).
+template <class S, class Entry, class Work>
+GRANDAMP_INLINE void each_vector(const Entry* entries, std::size_t count, ContactGeometry<S>* geometry,
+                                 ContactForces<S>* forces, Work work) {
+  for (const Entry* const end = entries + count; entries < end; entries += S::width, ++geometry, ++forces) {
+    const std::ptrdiff_t left = end - entries;
+    work(entries, static_cast<unsigned>(left < S::width ? left : S::width), *geometry, *forces);
+  }
+}
+
 /// Adds the contact forces of the candidate pairs to the force rows (and the ledger's rows).
 template <class S, ContactEffects E> void pair_kernel(const PairArguments& arguments, ContactResult& result) {
   const PairArguments a = arguments; // where no row that is stored can be a part of it
   PairLoop<S, E> loop{.a = a, .max_overlap = S::broadcast(result.max_overlap)};
   RowsAhead<typename S::Double, E.ledger()> ahead(a);
+  using Geometry = ContactGeometry<S>;
+  using Forces = ContactForces<S>;
+  const auto find_geometry = [&](const RowPair* pairs, unsigned lanes, Geometry& c, Forces&)
+      __attribute__((always_inline)) {
+    loop.geometry(pairs, lanes, c);
+    ahead.ask();
+  };
+  const auto find_forces = [&](const RowPair* pairs, unsigned lanes, Geometry& c, Forces& f)
+      __attribute__((always_inline)) {
+    loop.forces(pairs, lanes, c, f, result);
+  };
+  const auto add_rows = [&](const RowPair* pairs, unsigned lanes, Geometry& c, Forces& f)
+      __attribute__((always_inline)) {
+    loop.add_rows(pairs, lanes, c, f);
+  };
   for (std::size_t begin = 0; begin < a.count; begin += pair_chunk) {
     const std::size_t left = a.count - begin;
     const std::size_t n =
@@ -412,23 +445,14 @@ template <class S, ContactEffects E> void pair_kernel(const PairArguments& argum
       for (std::size_t k = n; k % contact_padding != 0; ++k) a.springs.slots[k] = a.springs.slots[n - 1];
     // In three loops: the way of one contact through its roots and divisions is so long, and has so many
     // instructions, that a processor cannot look beyond it to the next.
-    ContactGeometry<S> geometry[contact_batch / S::width];
-    ContactForces<S> forces[contact_batch / S::width];
+    Geometry geometry[contact_batch / S::width];
+    Forces forces[contact_batch / S::width];
     for (std::size_t first = 0; first < n; first += contact_batch) {
-      const std::size_t left_here = n - first < contact_batch ? n - first : contact_batch;
-      const auto each = [&](auto work) __attribute__((always_inline)) {
-        for (std::size_t k = 0; k < left_here; k += S::width)
-          work(a.touching + first + k, static_cast<unsigned>(left_here - k < S::width ? left_here - k : S::width),
-               k / S::width);
-      };
-      each([&](const RowPair* pairs, unsigned lanes, std::size_t v) __attribute__((always_inline)) {
-        loop.geometry(pairs, lanes, geometry[v]);
-        ahead.ask();
-      });
-      each([&](const RowPair* pairs, unsigned lanes, std::size_t v)
-               __attribute__((always_inline)) { loop.forces(pairs, lanes, geometry[v], forces[v], result); });
-      each([&](const RowPair* pairs, unsigned lanes, std::size_t v)
-               __attribute__((always_inline)) { loop.add_rows(pairs, lanes, geometry[v], forces[v]); });
+      const RowPair* const batch = a.touching + first;
+      const std::size_t count = n - first < contact_batch ? n - first : contact_batch;
+      each_vector<S>(batch, count, geometry, forces, find_geometry);
+      each_vector<S>(batch, count, geometry, forces, find_forces);
+      each_vector<S>(batch, count, geometry, forces, add_rows);
     }
   }
   while (ahead.ask()) {

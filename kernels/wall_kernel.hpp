@@ -47,22 +47,27 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     }
   }
 
-  std::size_t touching() const {
-    std::size_t n = 0;
-    for (std::size_t k = 0; k < a.count; k += width) {
+  /// Of list entries [first, first + count): the places of those that touch go to the scratch list behind the n that
+  /// are there; returns how many there are now. Marks first, as in the pair kernel.
+  std::size_t touching(std::size_t first, std::size_t count, std::size_t n) const {
+    std::uint8_t marks[pair_chunk / width];
+    for (std::size_t k = 0; k < count; k += width) {
       Vector nx, ny, nz, radius;
-      const Vector d = overlap(a.list + k, nx, ny, nz, radius);
+      const Vector d = overlap(a.list + first + k, nx, ny, nz, radius);
       unsigned mask = S::less(S::broadcast(0.0), d);
-      const std::size_t left = a.count - k;
+      const std::size_t left = count - k;
       if (left < width) mask &= (1U << left) - 1U; // the padding touches nothing
-      if constexpr (E.remembers()) select_slots<S>(k, mask, a.springs.slots + n);
-      n += S::select(a.list + k, mask, a.touching + n);
+      marks[k / width] = static_cast<std::uint8_t>(mask);
+    }
+    for (std::size_t k = 0; k < count; k += width) {
+      const unsigned mask = marks[k / width];
+      if constexpr (E.remembers()) select_slots<S>(first + k, mask, a.springs.slots + n);
+      n += S::select(a.list + first + k, mask, a.touching + n);
     }
     return n;
   }
 
-  void contacts(const std::uint32_t* list, unsigned lanes, WallResult& result) {
-    ContactGeometry<S> c;
+  void geometry(const std::uint32_t* list, ContactGeometry<S>& c) {
     c.overlap = S::max(overlap(list, c.nx, c.ny, c.nz, c.radius), S::broadcast(0.0));
 
     const MotionRow* motion = a.granules.predicted;
@@ -79,14 +84,17 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
                                 S::fma(c.ny, S::broadcast(a.direction[1]), c.nx * S::broadcast(a.direction[0])));
     c.mass = one / S::fma(along * along, S::broadcast(a.enclosure_inverse_mass), inverse_mass);
     c.friction_mass = one / (inverse_mass + S::broadcast(a.friction_inverse_mass));
+    max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
+  }
 
+  void forces(const std::uint32_t* list, unsigned lanes, const ContactGeometry<S>& c, ContactForces<S>& f,
+              WallResult& result) {
     LawVectors<S> law;
     if constexpr (E.variety == Variety::materials)
       law = gathered_laws<S>(a.laws, [&](int lane) { return a.granules.population[list[lane]]; });
     else
       law = common_law<S>(a.law);
 
-    ContactForces<S> f;
     if constexpr (E.remembers()) {
       const std::uint32_t* slots = a.springs.slots + (list - a.touching);
       ContactMemory<S> memory = recall(list, slots);
@@ -99,13 +107,11 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
-    max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
     max_closing = S::max(max_closing, f.closing);
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);
       result.contacts += lanes;
     }
-    add_rows(list, lanes, c, f);
   }
 
   ContactMemory<S> recall(const std::uint32_t* list, const std::uint32_t* slots) const {
@@ -165,16 +171,41 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
 };
 
 /// Adds one wall's contact forces to the force rows, and sums them.
-template <class S, ContactEffects E, Surface shape> void wall_kernel(const WallArguments& a, WallResult& result) {
+template <class S, ContactEffects E, Surface shape>
+void wall_kernel(const WallArguments& arguments, WallResult& result) {
+  const WallArguments a = arguments; // where no row that is stored can be a part of it
   WallLoop<S, E, shape> loop{.a = a};
-  const std::size_t n = loop.touching();
-  // The last, partly filled vector repeats its last contact in the lanes that are not used.
+  std::size_t n = 0;
+  for (std::size_t first = 0; first < a.count; first += pair_chunk)
+    n = loop.touching(first, a.count - first < pair_chunk ? a.count - first : pair_chunk, n);
   if (n == 0) return;
+  // The last, partly filled vector repeats its last contact in the lanes that are not used.
   for (std::size_t k = n; k % list_padding != 0; ++k) a.touching[k] = a.touching[n - 1];
   if constexpr (E.remembers())
     for (std::size_t k = n; k % list_padding != 0; ++k) a.springs.slots[k] = a.springs.slots[n - 1];
-  for (std::size_t k = 0; k < n; k += S::width)
-    loop.contacts(a.touching + k, static_cast<unsigned>(n - k < S::width ? n - k : S::width), result);
+  using Geometry = ContactGeometry<S>;
+  using Forces = ContactForces<S>;
+  const auto find_geometry = [&](const std::uint32_t* list, unsigned, Geometry& c, Forces&)
+      __attribute__((always_inline)) {
+    loop.geometry(list, c);
+  };
+  const auto find_forces = [&](const std::uint32_t* list, unsigned lanes, Geometry& c, Forces& f)
+      __attribute__((always_inline)) {
+    loop.forces(list, lanes, c, f, result);
+  };
+  const auto add_rows = [&](const std::uint32_t* list, unsigned lanes, Geometry& c, Forces& f)
+      __attribute__((always_inline)) {
+    loop.add_rows(list, lanes, c, f);
+  };
+  Geometry geometry[contact_batch / S::width];
+  Forces forces[contact_batch / S::width];
+  for (std::size_t first = 0; first < n; first += contact_batch) {
+    const std::uint32_t* const batch = a.touching + first;
+    const std::size_t count = n - first < contact_batch ? n - first : contact_batch;
+    each_vector<S>(batch, count, geometry, forces, find_geometry);
+    each_vector<S>(batch, count, geometry, forces, find_forces);
+    each_vector<S>(batch, count, geometry, forces, add_rows);
+  }
   result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
   result.max_closing = largest<S>(loop.max_closing, result.max_closing);
   alignas(32) double total[4];
