@@ -12,7 +12,7 @@ template <class S, MotionEffects E> struct MotionLoop {
   using Row = typename S::Row;
   static constexpr int width = S::width;
 
-  const MotionArguments& a;
+  const MotionArguments a; // a copy, where no row that is stored can be a part of it
   const Row zero = S::row_broadcast(0.0);
   const Row half = S::row_broadcast(0.5);
   const Row kick = S::row_set(a.kick[0], a.kick[1], a.kick[2], 0.0);
@@ -47,10 +47,9 @@ template <class S, MotionEffects E> struct MotionLoop {
     if constexpr (E.rotates()) {
       spin_before = S::row_load(motion.surface_spin);
       spin_after = S::row_fma(S::row_load(force.turn), S::row_broadcast(inverse_mass) * turn, spin_before);
-      S::row_store(force.turn, zero);
       S::row_store(motion.surface_spin, spin_after);
     }
-    if constexpr (E.counts()) force.friction_share = friction_share(touching);
+    if constexpr (E.counts()) S::row_store(force.turn, friction_share_row<S>(touching));
 
     double* position = &a.granules.position[i].x;
     const Row here = S::row_load(position);
@@ -153,16 +152,17 @@ template <class S, MotionEffects E> struct MotionLoop {
 };
 
 /// Steps the granules first <= i < last.
-template <class S, MotionEffects E> void motion_kernel(const MotionArguments& a, MotionResult& result) {
+template <class S, MotionEffects E> void motion_kernel(const MotionArguments& arguments, MotionResult& result) {
   using Vector = typename S::Vector;
   using Row = typename S::Row;
   constexpr std::uint32_t width = S::width;
-  MotionLoop<S, E> loop{.a = a};
+  MotionLoop<S, E> loop{.a = arguments};
+  const std::uint32_t last = arguments.last;
   Vector fastest = S::broadcast(result.max_speed_squared);
   Vector total = S::broadcast(0.0);
   Row rows[width];
-  for (std::uint32_t i = a.first; i < a.last; i += width) {
-    const std::uint32_t lanes = a.last - i < width ? a.last - i : width;
+  for (std::uint32_t i = arguments.first; i < last; i += width) {
+    const std::uint32_t lanes = last - i < width ? last - i : width;
     if (lanes == width)
       for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = loop.move(i + lane);
     else
