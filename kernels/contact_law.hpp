@@ -149,11 +149,11 @@ GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVector
       ry = g * uy;
       rz = g * uz;
     }
-    const Vector zero = S::broadcast(0.0);
-    out.fx = S::fnma(normal, c.nx, zero - rx);
-    out.fy = S::fnma(normal, c.ny, zero - ry);
-    out.fz = S::fnma(normal, c.nz, zero - rz);
+    out.fx = S::fnms(normal, c.nx, rx);
+    out.fy = S::fnms(normal, c.ny, ry);
+    out.fz = S::fnms(normal, c.nz, rz);
     if constexpr (E.ledger()) {
+      const Vector zero = S::broadcast(0.0);
       out.rx = zero - rx;
       out.ry = zero - ry;
       out.rz = zero - rz;

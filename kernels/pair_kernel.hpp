@@ -143,6 +143,32 @@ private:
   IndexRange then_;
 };
 
+/// Marks of 64 pairs: bit k for pair k.
+using PairMarks = std::uint64_t;
+inline constexpr std::size_t marked_at_once = 64;
+/// Marks to be gone through one by one; where there are more, vectors of pairs are moved together.
+inline constexpr int few_marks = 20;
+
+/// Appends the marked pairs of those from `pairs` on; returns the new end.
+template <class S, ContactEffects E>
+GRANDAMP_INLINE RowPair* take_marked(const PairArguments& a, const RowPair* pairs, PairMarks marks, RowPair* to) {
+  const auto first = static_cast<std::size_t>(pairs - a.pairs);
+  if (__builtin_popcountll(marks) <= few_marks) {
+    for (; marks != 0; marks &= marks - 1) {
+      const auto k = static_cast<unsigned>(__builtin_ctzll(marks));
+      if constexpr (E.remembers()) a.springs.slots[to - a.touching] = static_cast<std::uint32_t>(first) + k;
+      *to++ = pairs[k];
+    }
+    return to;
+  }
+  for (std::size_t k = 0; marks != 0; k += S::width, marks >>= S::width) {
+    const unsigned mask = marks & ((1U << S::width) - 1U);
+    if constexpr (E.remembers()) select_slots<S>(first + k, mask, a.springs.slots + (to - a.touching));
+    to += S::select(pairs + k, mask, to);
+  }
+  return to;
+}
+
 /// Moves the pairs that touch to the scratch list; returns their number. `a` must be the caller's own copy: what is
 /// written here could otherwise be a part of it. First all marks, then what is marked: where a pair is stored depends
 /// on the marks before it, and a processor that does not let loads overtake stores of unknown address would wait with
@@ -155,25 +181,26 @@ GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const RowPair* pair
   constexpr std::size_t at_once = list_padding;
   const PositionRow* position = a.granules.position;
   const Vector twice = S::broadcast(2.0 * a.radius);
-  std::uint8_t marks[pair_chunk / S::width];
-  std::uint8_t* mark = marks;
-  for (std::size_t k = 0; k < count; k += at_once) {
-    for (std::size_t part = k; part < k + at_once; part += S::width) {
-      Vector x, y, z, radii;
-      difference<S, alike>(positions(position, pairs + part), twice, x, y, z, radii);
-      const Vector square = S::fma(z, z, S::fma(y, y, x * x));
-      *mark++ = static_cast<std::uint8_t>(S::less(square, radii * radii));
+  PairMarks marks[pair_chunk / marked_at_once];
+  for (std::size_t first = 0; first < count; first += marked_at_once) {
+    const std::size_t last = count - first < marked_at_once ? count : first + marked_at_once;
+    PairMarks bits = 0;
+    unsigned shift = 0;
+    for (std::size_t k = first; k < last; k += at_once) {
+      for (std::size_t part = k; part < k + at_once; part += S::width, shift += S::width) {
+        Vector x, y, z, radii;
+        difference<S, alike>(positions(position, pairs + part), twice, x, y, z, radii);
+        const Vector square = S::fma(z, z, S::fma(y, y, x * x));
+        bits |= static_cast<PairMarks>(S::less(square, radii * radii)) << shift;
+      }
+      ahead.ask();
+      __builtin_prefetch(pairs + k + list_ahead);
     }
-    ahead.ask();
-    __builtin_prefetch(pairs + k + list_ahead);
+    marks[first / marked_at_once] = bits;
   }
   RowPair* to = a.touching;
-  for (std::size_t k = 0; k < count; k += S::width) {
-    const unsigned mask = marks[k / S::width];
-    if constexpr (E.remembers())
-      select_slots<S>(static_cast<std::size_t>(pairs + k - a.pairs), mask, a.springs.slots + (to - a.touching));
-    to += S::select(pairs + k, mask, to);
-  }
+  for (std::size_t first = 0; first < count; first += marked_at_once)
+    to = take_marked<S, E>(a, pairs + first, marks[first / marked_at_once], to);
   return static_cast<std::size_t>(to - a.touching);
 }
 

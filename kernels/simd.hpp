@@ -10,6 +10,7 @@
 //   S::tiny                         a square far below any speed's or force's that is not zero
 //   load, store, broadcast          unaligned
 //   fma(a, b, c) = a b + c, fnma(a, b, c) = c - a b   (fused where the instruction set has it)
+//   fnms(a, b, c) = -c - a b        fused as those
 //   sqrt, max, min, abs
 //   less(a, b)                      one bit per lane
 //   row_load, row_store, row_broadcast, row_fma, row_fnma, row_set

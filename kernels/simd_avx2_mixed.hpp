@@ -19,6 +19,7 @@ struct Avx2Mixed {
   GRANDAMP_INLINE Vector broadcast(double x) { return _mm256_set1_ps(static_cast<float>(x)); }
   GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return xsimd::fma(a, b, c); }
   GRANDAMP_INLINE Vector fnma(Vector a, Vector b, Vector c) { return xsimd::fnma(a, b, c); }
+  GRANDAMP_INLINE Vector fnms(Vector a, Vector b, Vector c) { return _mm256_fnmsub_ps(a, b, c); }
   GRANDAMP_INLINE Vector sqrt(Vector a) { return xsimd::sqrt(a); }
   GRANDAMP_INLINE Vector max(Vector a, Vector b) { return xsimd::max(a, b); }
   GRANDAMP_INLINE Vector min(Vector a, Vector b) { return xsimd::min(a, b); }

@@ -26,6 +26,7 @@ struct Avx512 {
   // xsimd 8.1 does not fuse on AVX-512.
   GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return _mm512_fmadd_pd(a, b, c); }
   GRANDAMP_INLINE Vector fnma(Vector a, Vector b, Vector c) { return _mm512_fnmadd_pd(a, b, c); }
+  GRANDAMP_INLINE Vector fnms(Vector a, Vector b, Vector c) { return _mm512_fnmsub_pd(a, b, c); }
   GRANDAMP_INLINE Vector sqrt(Vector a) { return xsimd::sqrt(a); }
   GRANDAMP_INLINE Vector max(Vector a, Vector b) { return xsimd::max(a, b); }
   GRANDAMP_INLINE Vector min(Vector a, Vector b) { return xsimd::min(a, b); }

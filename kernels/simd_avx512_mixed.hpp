@@ -19,6 +19,7 @@ struct Avx512Mixed {
   GRANDAMP_INLINE Vector broadcast(double x) { return _mm512_set1_ps(static_cast<float>(x)); }
   GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return _mm512_fmadd_ps(a, b, c); }
   GRANDAMP_INLINE Vector fnma(Vector a, Vector b, Vector c) { return _mm512_fnmadd_ps(a, b, c); }
+  GRANDAMP_INLINE Vector fnms(Vector a, Vector b, Vector c) { return _mm512_fnmsub_ps(a, b, c); }
   GRANDAMP_INLINE Vector sqrt(Vector a) { return _mm512_sqrt_ps(a); }
   GRANDAMP_INLINE Vector max(Vector a, Vector b) { return _mm512_max_ps(a, b); }
   GRANDAMP_INLINE Vector min(Vector a, Vector b) { return _mm512_min_ps(a, b); }

@@ -24,6 +24,7 @@ struct Generic {
   GRANDAMP_INLINE Vector broadcast(double x) { return Vector{x, x, x, x}; }
   GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return a * b + c; }
   GRANDAMP_INLINE Vector fnma(Vector a, Vector b, Vector c) { return c - a * b; }
+  GRANDAMP_INLINE Vector fnms(Vector a, Vector b, Vector c) { return broadcast(0.0) - c - a * b; }
   GRANDAMP_INLINE Vector sqrt(Vector a) {
     return Vector{__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])};
   }

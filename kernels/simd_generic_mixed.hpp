@@ -22,6 +22,7 @@ struct GenericMixed {
   }
   GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return a * b + c; }
   GRANDAMP_INLINE Vector fnma(Vector a, Vector b, Vector c) { return c - a * b; }
+  GRANDAMP_INLINE Vector fnms(Vector a, Vector b, Vector c) { return broadcast(0.0) - c - a * b; }
   GRANDAMP_INLINE Vector sqrt(Vector a) {
     return Vector{__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3]),
                   __builtin_sqrtf(a[4]), __builtin_sqrtf(a[5]), __builtin_sqrtf(a[6]), __builtin_sqrtf(a[7])};
