@@ -59,7 +59,7 @@ struct PairArguments {
   GranuleArrays granules;
   const RowPair* pairs = nullptr;
   std::size_t count = 0;        ///< a multiple of list_padding
-  RowPair* touching = nullptr;  ///< scratch of pair_chunk + contact_padding entries
+  RowPair* touching = nullptr;  ///< scratch of contact_scratch entries
   LawRow law{};                 ///< of all pairs (not with Variety::materials)
   const LawRow* laws = nullptr; ///< populations x populations (Variety::materials)
   std::size_t populations = 1;
@@ -72,8 +72,10 @@ struct PairArguments {
   std::array<IndexRange, 2> ahead{};
 };
 
-/// Candidates tested before their contacts are worked off.
-inline constexpr std::size_t pair_chunk = 1024;
+/// Entries of a list that are tested before their contacts are worked off.
+inline constexpr std::size_t contact_chunk = 1024;
+/// Room for those of a chunk that touch, padded to a vector.
+inline constexpr std::size_t contact_scratch = contact_chunk + contact_padding;
 
 /// Pairs of the list that are asked of memory before they are tested: each block of the list is a new beginning, which
 /// takes a processor that watches for streams some time to see.
@@ -96,7 +98,7 @@ struct WallArguments {
   WallSurface surface;
   const std::uint32_t* list = nullptr; ///< padded with `ghost` to a multiple of list_padding
   std::size_t count = 0;               ///< without the padding
-  std::uint32_t* touching = nullptr;   ///< scratch of the padded count
+  std::uint32_t* touching = nullptr;   ///< scratch of contact_scratch entries
   LawRow law{};
   const LawRow* laws = nullptr;          ///< by population (Variety::materials)
   double direction[3] = {0.0, 0.0, 0.0}; ///< of the enclosure's motion

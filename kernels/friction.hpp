@@ -32,7 +32,7 @@ template <class S> GRANDAMP_INLINE typename S::Row friction_share_row(double tou
   const auto n = static_cast<unsigned>(touching);
   if (n < 32) [[likely]]
     return S::row_load(table.rows[n]);
-  return S::row_set(0.0, 0.0, 0.0, 1.0 / (1.0 + touching)); // longer than all else that moves a granule
+  return S::row_set(0.0, 0.0, 0.0, 1.0 / (1.0 + touching)); // a division takes longer than all else here
 }
 
 } // namespace grandamp::kernels

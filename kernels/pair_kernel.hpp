@@ -2,90 +2,10 @@
 // forces row by row. Rows i and j are subtracted before they are transposed: two loads and one transpose per quantity.
 #pragma once
 
-#include "kernels/arguments.hpp"
+#include "kernels/contact_loops.hpp"
+#include "kernels/rows_ahead.hpp"
 
 namespace grandamp::kernels {
-
-/// Sum of a law's constants by population, transposed to lanes.
-template <class S, class Index> GRANDAMP_INLINE LawVectors<S> gathered_laws(const LawRow* laws, Index index) {
-  typename S::Row rows[S::width];
-  for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(&laws[index(lane)].stiffness);
-  LawVectors<S> law;
-  typename S::Vector unused;
-  S::columns(rows, law.stiffness, law.damping, law.friction, unused);
-  return law;
-}
-
-template <class S> GRANDAMP_INLINE LawVectors<S> common_law(const LawRow& law) {
-  return {S::broadcast(law.stiffness), S::broadcast(law.damping), S::broadcast(law.friction)};
-}
-
-template <class S, class Index>
-GRANDAMP_INLINE SpringLawVectors<S> gathered_laws(const SpringLawRow* laws, Index index) {
-  typename S::Row rows[S::width];
-  for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(&laws[index(lane)].stiffness);
-  SpringLawVectors<S> law;
-  typename S::Vector unused, neither;
-  S::columns(rows, law.stiffness, law.damping, unused, neither);
-  return law;
-}
-
-template <class S> GRANDAMP_INLINE SpringLawVectors<S> common_law(const SpringLawRow& law) {
-  return {S::broadcast(law.stiffness), S::broadcast(law.damping)};
-}
-
-/// The springs of these slots; zero where there was no touch in the step before.
-template <class S> GRANDAMP_INLINE Spring<S> remembered(const SpringArguments& a, const std::uint32_t* slots) {
-  typename S::Row rows[S::width];
-  for (int lane = 0; lane < S::width; ++lane) {
-    const std::uint32_t slot = slots[lane];
-    rows[lane] = a.touched[slot] == a.before ? S::row_load(a.rows[slot].force) : S::row_broadcast(0.0);
-  }
-  Spring<S> spring;
-  S::columns(rows, spring.fx, spring.fy, spring.fz, spring.root);
-  return spring;
-}
-
-template <class S>
-GRANDAMP_INLINE void remember(const SpringArguments& a, const std::uint32_t* slots, unsigned lanes,
-                              const Spring<S>& spring) {
-  typename S::Row rows[S::width];
-  S::rows(spring.fx, spring.fy, spring.fz, spring.root, rows);
-  for (unsigned lane = 0; lane < lanes; ++lane) {
-    S::row_store(a.rows[slots[lane]].force, rows[lane]);
-    a.touched[slots[lane]] = a.now;
-  }
-}
-
-/// Moves the marked ones of the places first ... first + width - 1 together.
-template <class S> GRANDAMP_INLINE void select_slots(std::size_t first, unsigned mask, std::uint32_t* to) {
-  std::uint32_t here[S::width];
-  for (std::uint32_t lane = 0; lane < S::width; ++lane) here[lane] = static_cast<std::uint32_t>(first) + lane;
-  S::select(here, mask, to);
-}
-
-/// The share of a slip's momentum that friction may take at contacts of these rows.
-template <class S, class Row> GRANDAMP_INLINE typename S::Vector friction_shares(Row row) {
-  typename S::Row rows[S::width];
-  for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(row(lane).turn);
-  typename S::Vector share, unused, neither, nor_this;
-  S::columns(rows, unused, neither, nor_this, share);
-  return share;
-}
-
-/// Adds the lanes' elastic energy in list order, whatever the lane count.
-template <class S> GRANDAMP_INLINE void add_in_order(typename S::Vector v, unsigned lanes, double& sum) {
-  double values[S::width];
-  S::store(values, v);
-  for (unsigned lane = 0; lane < lanes; ++lane) sum += values[lane];
-}
-
-template <class S> GRANDAMP_INLINE double largest(typename S::Vector v, double so_far) {
-  double values[S::width];
-  S::store(values, v);
-  for (int lane = 0; lane < S::width; ++lane) so_far = values[lane] > so_far ? values[lane] : so_far;
-  return so_far;
-}
 
 /// p_j - p_i of `width` pairs, and the sum of their radii. `position(lane, second)`: a granule's.
 template <class S, bool alike, class Position>
@@ -112,108 +32,34 @@ GRANDAMP_INLINE auto positions(const PositionRow* position, const RowPair* pairs
   };
 }
 
-/// Asks memory for rows, two at a time.
-template <class S, bool ledger> class RowsAhead {
-public:
-  explicit RowsAhead(const PairArguments& a)
-      : granules_(a.granules), next_(a.ahead[0].first), last_(a.ahead[0].last), then_(a.ahead[1]) {}
-
-  /// False when there are no more.
-  [[gnu::always_inline]] bool ask() {
-    if (next_ >= last_) {
-      if (then_.first >= then_.last) return false;
-      next_ = then_.first;
-      last_ = then_.last;
-      then_.last = 0;
-    }
-    __builtin_prefetch(granules_.position + next_, 1);
-    for (std::uint32_t row = next_; row < next_ + 2; ++row) {
-      __builtin_prefetch(granules_.motion + row, 1);
-      __builtin_prefetch(granules_.force + row, 1);
-      if constexpr (ledger) __builtin_prefetch(granules_.kinds.friction_granule + row, 1);
-    }
-    if constexpr (ledger) __builtin_prefetch(granules_.kinds.damping_granule + next_, 1);
-    next_ += 2;
-    return true;
-  }
-
-private:
-  GranuleArrays granules_;
-  std::uint32_t next_, last_;
-  IndexRange then_;
-};
-
-/// Marks of 64 pairs: bit k for pair k.
-using PairMarks = std::uint64_t;
-inline constexpr std::size_t marked_at_once = 64;
-/// Marks to be gone through one by one; where there are more, vectors of pairs are moved together.
-inline constexpr int few_marks = 20;
-
-/// Appends the marked pairs of those from `pairs` on; returns the new end.
-template <class S, ContactEffects E>
-GRANDAMP_INLINE RowPair* take_marked(const PairArguments& a, const RowPair* pairs, PairMarks marks, RowPair* to) {
-  const auto first = static_cast<std::size_t>(pairs - a.pairs);
-  if (__builtin_popcountll(marks) <= few_marks) {
-    for (; marks != 0; marks &= marks - 1) {
-      const auto k = static_cast<unsigned>(__builtin_ctzll(marks));
-      if constexpr (E.remembers()) a.springs.slots[to - a.touching] = static_cast<std::uint32_t>(first) + k;
-      *to++ = pairs[k];
-    }
-    return to;
-  }
-  for (std::size_t k = 0; marks != 0; k += S::width, marks >>= S::width) {
-    const unsigned mask = marks & ((1U << S::width) - 1U);
-    if constexpr (E.remembers()) select_slots<S>(first + k, mask, a.springs.slots + (to - a.touching));
-    to += S::select(pairs + k, mask, to);
-  }
-  return to;
-}
-
-/// Moves the pairs that touch to the scratch list; returns their number. `a` must be the caller's own copy: what is
-/// written here could otherwise be a part of it. First all marks, then what is marked: where a pair is stored depends
-/// on the marks before it, and a processor that does not let loads overtake stores of unknown address would wait with
-/// the next pairs' rows for each of them.
-template <class S, ContactEffects E>
-GRANDAMP_INLINE std::size_t touching(const PairArguments& a, const RowPair* pairs, std::size_t count,
-                                     RowsAhead<S, E.ledger()>& ahead) {
-  using Vector = typename S::Vector;
-  constexpr bool alike = E.variety == Variety::alike;
-  constexpr std::size_t at_once = list_padding;
-  const PositionRow* position = a.granules.position;
-  const Vector twice = S::broadcast(2.0 * a.radius);
-  PairMarks marks[pair_chunk / marked_at_once];
-  for (std::size_t first = 0; first < count; first += marked_at_once) {
-    const std::size_t last = count - first < marked_at_once ? count : first + marked_at_once;
-    PairMarks bits = 0;
-    unsigned shift = 0;
-    for (std::size_t k = first; k < last; k += at_once) {
-      for (std::size_t part = k; part < k + at_once; part += S::width, shift += S::width) {
-        Vector x, y, z, radii;
-        difference<S, alike>(positions(position, pairs + part), twice, x, y, z, radii);
-        const Vector square = S::fma(z, z, S::fma(y, y, x * x));
-        bits |= static_cast<PairMarks>(S::less(square, radii * radii)) << shift;
-      }
-      ahead.ask();
-      __builtin_prefetch(pairs + k + list_ahead);
-    }
-    marks[first / marked_at_once] = bits;
-  }
-  RowPair* to = a.touching;
-  for (std::size_t first = 0; first < count; first += marked_at_once)
-    to = take_marked<S, E>(a, pairs + first, marks[first / marked_at_once], to);
-  return static_cast<std::size_t>(to - a.touching);
-}
-
 template <class S, ContactEffects E> struct PairLoop {
   using Vector = typename S::Vector;
   using Row = typename S::Row;
   static constexpr int width = S::width;
   static constexpr bool alike = E.variety == Variety::alike;
 
-  const PairArguments& a;
+  const PairArguments a; // a copy, where no row that is stored can be a part of it
+  ContactResult& result;
+  RowsAhead<typename S::Double, E.ledger()> ahead{a};
   const Row last_flipped = S::row_set(1.0, 1.0, 1.0, -1.0);
-  Vector max_overlap;
+  Vector max_overlap = S::broadcast(result.max_overlap);
   Vector max_closing = S::broadcast(0.0);
+
+  /// Which of the pairs from `entry` on touch.
+  [[gnu::always_inline]] unsigned marks(std::size_t entry) {
+    using D = typename S::Double;
+    const RowPair* const pairs = a.pairs + entry;
+    const typename D::Vector twice = D::broadcast(2.0 * a.radius);
+    unsigned marks = 0;
+    for (unsigned k = 0; k < list_padding; k += D::width) {
+      typename D::Vector x, y, z, radii;
+      difference<D, alike>(positions(a.granules.position, pairs + k), twice, x, y, z, radii);
+      marks |= D::less(D::fma(z, z, D::fma(y, y, x * x)), radii * radii) << k;
+    }
+    ahead.ask();
+    __builtin_prefetch(pairs + list_ahead);
+    return marks;
+  }
 
   /// From i to j, the distance and its square, the sum of the radii, and by how much they exceed it.
   void approach(const RowPair* pairs, Vector& x, Vector& y, Vector& z, Vector& square, Vector& distance, Vector& radii,
@@ -244,7 +90,7 @@ template <class S, ContactEffects E> struct PairLoop {
     }
   }
 
-  void geometry(const RowPair* pairs, unsigned lanes, ContactGeometry<S>& c) {
+  [[gnu::always_inline]] void geometry(const RowPair* pairs, unsigned lanes, ContactGeometry<S>& c) {
     Vector x, y, z, square, distance, radii;
     approach(pairs, x, y, z, square, distance, radii, c.overlap);
 
@@ -288,6 +134,7 @@ template <class S, ContactEffects E> struct PairLoop {
     c.ny = y * inverse;
     c.nz = z * inverse;
     if constexpr (!alike) c.friction_mass = c.mass;
+    ahead.ask();
   }
 
   /// With what is the same for all contacts and is not kept with each. Member by member: as a whole it would be copied.
@@ -303,16 +150,16 @@ template <class S, ContactEffects E> struct PairLoop {
     return c;
   }
 
-  void forces(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& kept, ContactForces<S>& f,
-              ContactResult& result) {
+  [[gnu::always_inline]] void forces(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& kept,
+                                     ContactForces<S>& f) {
     if constexpr (alike)
-      forces_of(pairs, lanes, completed(kept), f, result);
+      forces_of(pairs, lanes, completed(kept), f);
     else
-      forces_of(pairs, lanes, kept, f, result);
+      forces_of(pairs, lanes, kept, f);
   }
 
   [[gnu::always_inline]] void forces_of(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& c,
-                                        ContactForces<S>& f, ContactResult& result) {
+                                        ContactForces<S>& f) {
     LawVectors<S> law;
     if constexpr (E.variety == Variety::materials)
       law = gathered_laws<S>(a.laws, [&](int lane) {
@@ -368,7 +215,8 @@ template <class S, ContactEffects E> struct PairLoop {
     return memory;
   }
 
-  void add_rows(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
+  [[gnu::always_inline]] void add_rows(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& c,
+                                       const ContactForces<S>& f) {
     const Vector zero = S::broadcast(0.0);
     Row forces[width], turns[width];
     S::rows(f.fx, f.fy, f.fz, E.counts() ? S::broadcast(1.0) : zero, forces);
@@ -431,58 +279,11 @@ template <class S, ContactEffects E> struct PairLoop {
   }
 };
 
-/// Vector by vector of `count` contacts: work(entries of the list, how many of the lanes are used, geometry, forces).
-template <class S, class Entry, class Work>
-GRANDAMP_INLINE void each_vector(const Entry* entries, std::size_t count, ContactGeometry<S>* geometry,
-                                 ContactForces<S>* forces, Work work) {
-  for (const Entry* const end = entries + count; entries < end; entries += S::width, ++geometry, ++forces) {
-    const std::ptrdiff_t left = end - entries;
-    work(entries, static_cast<unsigned>(left < S::width ? left : S::width), *geometry, *forces);
-  }
-}
-
 /// Adds the contact forces of the candidate pairs to the force rows (and the ledger's rows).
-template <class S, ContactEffects E> void pair_kernel(const PairArguments& arguments, ContactResult& result) {
-  const PairArguments a = arguments; // where no row that is stored can be a part of it
-  PairLoop<S, E> loop{.a = a, .max_overlap = S::broadcast(result.max_overlap)};
-  RowsAhead<typename S::Double, E.ledger()> ahead(a);
-  using Geometry = ContactGeometry<S>;
-  using Forces = ContactForces<S>;
-  const auto find_geometry = [&](const RowPair* pairs, unsigned lanes, Geometry& c, Forces&)
-      __attribute__((always_inline)) {
-    loop.geometry(pairs, lanes, c);
-    ahead.ask();
-  };
-  const auto find_forces = [&](const RowPair* pairs, unsigned lanes, Geometry& c, Forces& f)
-      __attribute__((always_inline)) {
-    loop.forces(pairs, lanes, c, f, result);
-  };
-  const auto add_rows = [&](const RowPair* pairs, unsigned lanes, Geometry& c, Forces& f)
-      __attribute__((always_inline)) {
-    loop.add_rows(pairs, lanes, c, f);
-  };
-  for (std::size_t begin = 0; begin < a.count; begin += pair_chunk) {
-    const std::size_t left = a.count - begin;
-    const std::size_t n =
-        touching<typename S::Double, E>(a, a.pairs + begin, left < pair_chunk ? left : pair_chunk, ahead);
-    if (n == 0) continue;
-    // The last, partly filled vector repeats its last contact in the lanes that are not used.
-    for (std::size_t k = n; k % contact_padding != 0; ++k) a.touching[k] = a.touching[n - 1];
-    if constexpr (E.remembers())
-      for (std::size_t k = n; k % contact_padding != 0; ++k) a.springs.slots[k] = a.springs.slots[n - 1];
-    // In three loops: the way of one contact through its roots and divisions is so long, and has so many
-    // instructions, that a processor cannot look beyond it to the next.
-    Geometry geometry[contact_batch / S::width];
-    Forces forces[contact_batch / S::width];
-    for (std::size_t first = 0; first < n; first += contact_batch) {
-      const RowPair* const batch = a.touching + first;
-      const std::size_t count = n - first < contact_batch ? n - first : contact_batch;
-      each_vector<S>(batch, count, geometry, forces, find_geometry);
-      each_vector<S>(batch, count, geometry, forces, find_forces);
-      each_vector<S>(batch, count, geometry, forces, add_rows);
-    }
-  }
-  while (ahead.ask()) {
+template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, ContactResult& result) {
+  PairLoop<S, E> loop{.a = a, .result = result};
+  work_off_list<S, E.remembers()>(loop, loop.a.pairs, loop.a.count, loop.a.touching, loop.a.springs.slots);
+  while (loop.ahead.ask()) {
   }
   result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
   result.max_closing = largest<S>(loop.max_closing, result.max_closing);

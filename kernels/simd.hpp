@@ -8,6 +8,7 @@
 //   S::Double                       the set that works in double: S itself, but for the mixed sets
 //   S::Eight                        eight lanes of float (kernels/eight_floats.hpp)
 //   S::tiny                         a square far below any speed's or force's that is not zero
+//   S::stages_apart                 whether contacts are worked off in three loops (kernels/contact_loops.hpp)
 //   load, store, broadcast          unaligned
 //   fma(a, b, c) = a b + c, fnma(a, b, c) = c - a b   (fused where the instruction set has it)
 //   fnms(a, b, c) = -c - a b        fused as those

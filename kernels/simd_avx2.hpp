@@ -27,6 +27,7 @@ struct Avx2 {
   using Eight = EightFloatsAvx2;
   static constexpr int width = 4;
   static constexpr double tiny = 1e-200;
+  static constexpr bool stages_apart = true;
 
   GRANDAMP_INLINE Vector load(const double* p) { return _mm256_loadu_pd(p); }
   GRANDAMP_INLINE void store(double* p, Vector v) { _mm256_storeu_pd(p, v); }

@@ -11,6 +11,7 @@ struct Avx2Mixed {
   using Row = Avx2::Row;
   static constexpr int width = 8;
   static constexpr double tiny = 1e-36;
+  static constexpr bool stages_apart = true;
 
   GRANDAMP_INLINE void store(double* p, Vector v) {
     _mm256_storeu_pd(p, _mm256_cvtps_pd(_mm256_castps256_ps128(v)));

@@ -19,6 +19,7 @@ struct Avx512 {
   using Eight = EightFloatsAvx2;
   static constexpr int width = 8;
   static constexpr double tiny = 1e-200;
+  static constexpr bool stages_apart = true;
 
   GRANDAMP_INLINE Vector load(const double* p) { return _mm512_loadu_pd(p); }
   GRANDAMP_INLINE void store(double* p, Vector v) { _mm512_storeu_pd(p, v); }

@@ -11,6 +11,7 @@ struct Avx512Mixed {
   using Row = Avx512::Row;
   static constexpr int width = 16;
   static constexpr double tiny = 1e-36;
+  static constexpr bool stages_apart = true;
 
   GRANDAMP_INLINE void store(double* p, Vector v) {
     _mm512_storeu_pd(p, _mm512_cvtps_pd(_mm512_castps512_ps256(v)));

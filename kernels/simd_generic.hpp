@@ -14,6 +14,7 @@ struct Generic {
   using Eight = EightFloats;
   static constexpr int width = 4;
   static constexpr double tiny = 1e-200;
+  static constexpr bool stages_apart = false;
 
   GRANDAMP_INLINE Vector load(const double* p) {
     Vector v;

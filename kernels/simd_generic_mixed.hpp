@@ -12,6 +12,7 @@ struct GenericMixed {
   using Row = Generic::Row;
   static constexpr int width = 8;
   static constexpr double tiny = 1e-36;
+  static constexpr bool stages_apart = true;
 
   GRANDAMP_INLINE void store(double* p, Vector v) {
     for (int lane = 0; lane < 8; ++lane) p[lane] = static_cast<double>(v[lane]);

@@ -1,8 +1,7 @@
 // Granule against a wall of the enclosure, which stands still in its own frame: a plane, or the side of a cylinder.
 #pragma once
 
-#include "kernels/arguments.hpp"
-#include "kernels/pair_kernel.hpp"
+#include "kernels/contact_loops.hpp"
 
 namespace grandamp::kernels {
 
@@ -14,6 +13,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
   static constexpr int width = S::width;
 
   const WallArguments& a;
+  WallResult& result;
   Vector max_overlap = S::broadcast(0.0);
   Vector max_closing = S::broadcast(0.0);
   Row total_force = S::row_broadcast(0.0);
@@ -47,27 +47,18 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     }
   }
 
-  /// Of list entries [first, first + count): the places of those that touch go to the scratch list behind the n that
-  /// are there; returns how many there are now. Marks first, as in the pair kernel.
-  std::size_t touching(std::size_t first, std::size_t count, std::size_t n) const {
-    std::uint8_t marks[pair_chunk / width];
-    for (std::size_t k = 0; k < count; k += width) {
+  /// Which of the entries from `entry` on touch.
+  [[gnu::always_inline]] unsigned marks(std::size_t entry) const {
+    unsigned marks = 0;
+    for (unsigned k = 0; k < list_padding; k += width) {
       Vector nx, ny, nz, radius;
-      const Vector d = overlap(a.list + first + k, nx, ny, nz, radius);
-      unsigned mask = S::less(S::broadcast(0.0), d);
-      const std::size_t left = count - k;
-      if (left < width) mask &= (1U << left) - 1U; // the padding touches nothing
-      marks[k / width] = static_cast<std::uint8_t>(mask);
+      marks |= S::less(S::broadcast(0.0), overlap(a.list + entry + k, nx, ny, nz, radius)) << k;
     }
-    for (std::size_t k = 0; k < count; k += width) {
-      const unsigned mask = marks[k / width];
-      if constexpr (E.remembers()) select_slots<S>(first + k, mask, a.springs.slots + n);
-      n += S::select(a.list + first + k, mask, a.touching + n);
-    }
-    return n;
+    const std::size_t left = a.count - entry;
+    return left < list_padding ? marks & ((1U << left) - 1U) : marks; // the padding touches nothing
   }
 
-  void geometry(const std::uint32_t* list, ContactGeometry<S>& c) {
+  [[gnu::always_inline]] void geometry(const std::uint32_t* list, unsigned, ContactGeometry<S>& c) {
     c.overlap = S::max(overlap(list, c.nx, c.ny, c.nz, c.radius), S::broadcast(0.0));
 
     const MotionRow* motion = a.granules.predicted;
@@ -87,8 +78,8 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
   }
 
-  void forces(const std::uint32_t* list, unsigned lanes, const ContactGeometry<S>& c, ContactForces<S>& f,
-              WallResult& result) {
+  [[gnu::always_inline]] void forces(const std::uint32_t* list, unsigned lanes, const ContactGeometry<S>& c,
+                                     ContactForces<S>& f) {
     LawVectors<S> law;
     if constexpr (E.variety == Variety::materials)
       law = gathered_laws<S>(a.laws, [&](int lane) { return a.granules.population[list[lane]]; });
@@ -137,7 +128,8 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     return memory;
   }
 
-  void add_rows(const std::uint32_t* list, unsigned lanes, const ContactGeometry<S>& c, const ContactForces<S>& f) {
+  [[gnu::always_inline]] void add_rows(const std::uint32_t* list, unsigned lanes, const ContactGeometry<S>& c,
+                                       const ContactForces<S>& f) {
     const Vector zero = S::broadcast(0.0);
     Row forces[width], turns[width];
     S::rows(f.fx, f.fy, f.fz, E.counts() ? S::broadcast(1.0) : zero, forces);
@@ -171,41 +163,9 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
 };
 
 /// Adds one wall's contact forces to the force rows, and sums them.
-template <class S, ContactEffects E, Surface shape>
-void wall_kernel(const WallArguments& arguments, WallResult& result) {
-  const WallArguments a = arguments; // where no row that is stored can be a part of it
-  WallLoop<S, E, shape> loop{.a = a};
-  std::size_t n = 0;
-  for (std::size_t first = 0; first < a.count; first += pair_chunk)
-    n = loop.touching(first, a.count - first < pair_chunk ? a.count - first : pair_chunk, n);
-  if (n == 0) return;
-  // The last, partly filled vector repeats its last contact in the lanes that are not used.
-  for (std::size_t k = n; k % list_padding != 0; ++k) a.touching[k] = a.touching[n - 1];
-  if constexpr (E.remembers())
-    for (std::size_t k = n; k % list_padding != 0; ++k) a.springs.slots[k] = a.springs.slots[n - 1];
-  using Geometry = ContactGeometry<S>;
-  using Forces = ContactForces<S>;
-  const auto find_geometry = [&](const std::uint32_t* list, unsigned, Geometry& c, Forces&)
-      __attribute__((always_inline)) {
-    loop.geometry(list, c);
-  };
-  const auto find_forces = [&](const std::uint32_t* list, unsigned lanes, Geometry& c, Forces& f)
-      __attribute__((always_inline)) {
-    loop.forces(list, lanes, c, f, result);
-  };
-  const auto add_rows = [&](const std::uint32_t* list, unsigned lanes, Geometry& c, Forces& f)
-      __attribute__((always_inline)) {
-    loop.add_rows(list, lanes, c, f);
-  };
-  Geometry geometry[contact_batch / S::width];
-  Forces forces[contact_batch / S::width];
-  for (std::size_t first = 0; first < n; first += contact_batch) {
-    const std::uint32_t* const batch = a.touching + first;
-    const std::size_t count = n - first < contact_batch ? n - first : contact_batch;
-    each_vector<S>(batch, count, geometry, forces, find_geometry);
-    each_vector<S>(batch, count, geometry, forces, find_forces);
-    each_vector<S>(batch, count, geometry, forces, add_rows);
-  }
+template <class S, ContactEffects E, Surface shape> void wall_kernel(const WallArguments& a, WallResult& result) {
+  WallLoop<S, E, shape> loop{.a = a, .result = result};
+  work_off_list<S, E.remembers()>(loop, a.list, a.count, a.touching, a.springs.slots);
   result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
   result.max_closing = largest<S>(loop.max_closing, result.max_closing);
   alignas(32) double total[4];

@@ -101,8 +101,8 @@ private:
     granules_.set_ghosts();
     // Vectors may read past the end.
     for (auto* coordinate : {&x_, &y_, &z_}) coordinate->assign(granules_.count() + kernels::list_padding, 0.0);
-    touching_.resize(kernels::pair_chunk + kernels::contact_padding);
-    touching_wall_.resize(granules_.count() + kernels::list_padding);
+    touching_.resize(kernels::contact_scratch);
+    touching_wall_.resize(kernels::contact_scratch);
   }
 
   void find_pairs() {

@@ -91,7 +91,7 @@ constexpr int bed_side = 13; // 2,197 granules: S1's number
 void pair_bench(benchmark::State& state, InstructionSet set, ContactEffects effects, bool touching) {
   Bed bed(bed_side, (touching ? 1.97 : 2.1) * radius, (touching ? 0.005 : 0.03) * radius, effects.ledger());
   const std::vector<kernels::RowPair> list = bed.pairs((touching ? 2.0 : 2.3) * radius);
-  std::vector<kernels::RowPair> scratch(kernels::pair_chunk + kernels::contact_padding);
+  std::vector<kernels::RowPair> scratch(kernels::contact_scratch);
   kernels::PairArguments a;
   a.granules = bed.granules.arrays();
   a.pairs = list.data();
@@ -114,7 +114,7 @@ void pair_bench(benchmark::State& state, InstructionSet set, ContactEffects effe
 
 void wall_bench(benchmark::State& state, InstructionSet set, ContactEffects effects, bool side, bool touching) {
   Bed bed(bed_side, 2.1 * radius, 0.0, false);
-  std::vector<std::uint32_t> list(bed.granules.count()), scratch(bed.granules.count() + kernels::list_padding);
+  std::vector<std::uint32_t> list(bed.granules.count()), scratch(kernels::contact_scratch);
   const double distance = (touching ? 0.99 : 1.05) * radius;
   kernels::WallArguments a;
   if (side) {

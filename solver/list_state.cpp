@@ -89,16 +89,13 @@ PairRange put_range(Readers& from, Segment& segment, PairList& list, std::uint32
 
 void put_walls(Readers& from, Segment& segment, std::size_t walls, std::uint32_t ghost) {
   segment.walls.resize(walls);
-  std::size_t longest = 0;
   for (WallList& wall : segment.walls) {
     wall.count = from.wall_counts.next(0, segment.last - segment.first);
     for (std::size_t k = 0; k < wall.count; ++k)
       wall.granules.push_back(from.wall_rows.next(segment.first, segment.last - 1));
     wall.granules.resize((wall.count + kernels::list_padding - 1) / kernels::list_padding * kernels::list_padding,
                          ghost);
-    longest = std::max(longest, wall.granules.size());
   }
-  segment.touching_wall.resize(longest + kernels::list_padding);
 }
 
 } // namespace
@@ -142,7 +139,8 @@ void restore(VerletList& list, const ListState& state, std::uint32_t granules, s
     }
     if (block_row != segment.last) from.block_rows.fail("leaves rows of a segment out");
     put_walls(from, segment, walls, granules);
-    segment.touching.resize(kernels::pair_chunk + kernels::contact_padding);
+    segment.touching.resize(kernels::contact_scratch);
+    segment.touching_wall.resize(kernels::contact_scratch);
   }
   if (row != granules) from.segment_rows.fail("leaves rows out");
   from.finish();

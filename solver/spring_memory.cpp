@@ -117,7 +117,7 @@ void SpringMemory::spread(const std::vector<LoadedSpring>& springs, const Verlet
         rows.walls[w].touched[k] = mark;
       }
     }
-    rows.slots.resize(std::max(segment.touching.size(), segment.touching_wall.size()) + kernels::list_padding);
+    rows.slots.resize(kernels::contact_scratch);
   });
 }
 

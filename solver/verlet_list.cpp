@@ -97,7 +97,6 @@ void list_walls(Segment& segment, const Granules& granules, const std::vector<Wa
                 const Places& places) {
   segment.walls.resize(walls.size());
   segment.outside.clear();
-  std::size_t longest = 0;
   for (std::size_t w = 0; w < walls.size(); ++w) {
     WallList& list = segment.walls[w];
     list.granules.clear();
@@ -111,11 +110,9 @@ void list_walls(Segment& segment, const Granules& granules, const std::vector<Wa
     });
     list.count = list.granules.size();
     while (list.granules.size() % kernels::list_padding != 0) list.granules.push_back(granules.count());
-    longest = std::max(longest, list.granules.size());
   }
-  segment.touching_wall.resize(longest + kernels::list_padding);
-  const std::size_t scratch = kernels::pair_chunk + kernels::contact_padding;
-  if (segment.touching.size() < scratch) segment.touching.resize(scratch);
+  segment.touching.resize(kernels::contact_scratch);
+  segment.touching_wall.resize(kernels::contact_scratch);
 }
 
 /// Calls look(first, last) for the rows in layers [first_layer, last_layer) that can be near the wall: at a plane those

@@ -11,12 +11,12 @@ from .states import SCENES, START_SPEED
 
 #: steps timed, steps before that, LAMMPS's skins to try (m), least ratio wanted to LAMMPS, and to LIGGGHTS
 PLAN = {
-    "S1": (10000, 1000, (0.3e-3, 0.4e-3, 0.5e-3, 0.6e-3), 9.0, 11.0),
-    "S1_rest": (10000, 1000, (0.1e-3, 0.2e-3, 0.3e-3), None, None),
-    "S2": (10000, 1000, (0.35e-3, 0.45e-3, 0.6e-3), None, None),
+    "S1": (20000, 1000, (0.3e-3, 0.4e-3, 0.5e-3, 0.6e-3), 9.0, 11.0),
+    "S1_rest": (20000, 1000, (0.1e-3, 0.2e-3, 0.3e-3), None, None),
+    "S2": (20000, 1000, (0.35e-3, 0.45e-3, 0.6e-3), None, None),
     "S3": (400, 40, (0.08e-3, 0.12e-3, 0.16e-3, 0.24e-3), 8.0, None),
     "S4": (100, 20, (0.08e-3, 0.12e-3, 0.16e-3, 0.24e-3), 9.0, None),
-    "S5": (20000, 1000, (0.4e-3, 0.5e-3, 0.8e-3, 1.2e-3), 5.0, None),
+    "S5": (40000, 1000, (0.4e-3, 0.5e-3, 0.8e-3, 1.2e-3), 5.0, None),
 }
 
 #: All, or those of the environment's SCENES ("S1 S5").

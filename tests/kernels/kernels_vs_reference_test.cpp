@@ -140,10 +140,16 @@ void pad(std::vector<std::uint32_t>& list, std::uint32_t ghost) {
 
 namespace {
 
+bool touch(const Bed& bed, const RowPair& pair) {
+  const auto &a = bed.granules[pair.first()], &b = bed.granules[pair.second()];
+  return reference::pair_contact(a, b, bed.laws.front(), step).touching;
+}
+
 void check_pairs(const std::vector<ContactEffects>& sets) {
   for (const InstructionSet machine : machines())
     for (const ContactEffects effects : sets)
-      for (const std::size_t limit : {std::size_t{1}, std::size_t{13}, std::size_t{100000}}) {
+      // A pair, a few, those that touch first so that they stand close, and all, among which few touch.
+      for (const std::size_t limit : {std::size_t{1}, std::size_t{13}, std::size_t{150}, std::size_t{100000}}) {
         const std::string which = describe(machine, effects);
         CAPTURE(which);
         CAPTURE(limit);
@@ -153,6 +159,12 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
         for (std::uint32_t i = 0; i < ghost; ++i)
           for (std::uint32_t j = i + 1; j < ghost; ++j) pairs.push_back(RowPair::of(i, j));
         std::shuffle(pairs.begin(), pairs.end(), std::mt19937_64(3));
+        if (limit == 150) {
+          const auto apart =
+              std::stable_partition(pairs.begin(), pairs.end(), [&](const RowPair& pair) { return touch(bed, pair); });
+          REQUIRE(apart - pairs.begin() > 32); // of the first 64
+          REQUIRE(apart - pairs.begin() < 150);
+        }
         pairs.resize(std::min(pairs.size(), limit));
 
         Expected expected(bed.count());
@@ -190,7 +202,7 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
         if (limit == 100000) REQUIRE(expected.contacts > 40);
 
         while (pairs.size() % list_padding) pairs.push_back(RowPair::of(ghost, ghost + 1));
-        std::vector<RowPair> scratch(pair_chunk + contact_padding);
+        std::vector<RowPair> scratch(contact_scratch);
         PairArguments arguments;
         arguments.granules = bed.arrays();
         arguments.pairs = pairs.data();
@@ -246,7 +258,7 @@ TEST_CASE("mixed precision keeps overlaps that float coordinates could not tell"
         REQUIRE(contact.touching);
         const auto ghost = static_cast<std::uint32_t>(bed.count());
         std::vector<RowPair> pairs(list_padding, RowPair::of(ghost, ghost + 1));
-        std::vector<RowPair> scratch(pair_chunk + contact_padding);
+        std::vector<RowPair> scratch(contact_scratch);
         pairs[3] = RowPair::of(0, 1);
         PairArguments arguments;
         arguments.granules = bed.arrays();
@@ -288,7 +300,7 @@ TEST_CASE("what a set of effects leaves out is not even read by its pair kernels
       Bed bed = make_bed(effects, 7);
       const auto ghost = static_cast<std::uint32_t>(bed.count());
       std::vector<RowPair> pairs;
-      std::vector<RowPair> scratch(pair_chunk + contact_padding);
+      std::vector<RowPair> scratch(contact_scratch);
       for (std::uint32_t i = 0; i < ghost; ++i)
         for (std::uint32_t j = i + 1; j < ghost; ++j) pairs.push_back(RowPair::of(i, j));
       while (pairs.size() % list_padding) pairs.push_back(RowPair::of(ghost, ghost + 1));
@@ -334,7 +346,7 @@ TEST_CASE("pair kernels: lists longer than a chunk, and larger figures from befo
     const int times = 10;
     for (int n = 0; n < times; ++n) pairs.insert(pairs.end(), once.begin(), once.end());
     while (pairs.size() % list_padding) pairs.push_back(RowPair::of(ghost, ghost + 1));
-    REQUIRE(pairs.size() > 2 * pair_chunk);
+    REQUIRE(pairs.size() > 2 * contact_chunk);
     std::int64_t contacts = 0;
     double elastic = 0.0;
     for (const RowPair& pair : once) {
@@ -343,7 +355,7 @@ TEST_CASE("pair kernels: lists longer than a chunk, and larger figures from befo
       contacts += contact.touching;
       elastic += contact.elastic_energy;
     }
-    std::vector<RowPair> scratch(pair_chunk + contact_padding);
+    std::vector<RowPair> scratch(contact_scratch);
     PairArguments arguments;
     arguments.granules = bed.arrays();
     arguments.pairs = pairs.data();
@@ -433,7 +445,7 @@ TEST_CASE("wall kernels: every instruction set, set of effects, plane and side a
           arguments.count = list.size();
           pad(list, ghost);
           arguments.list = list.data();
-          std::vector<std::uint32_t> scratch(list.size() + list_padding);
+          std::vector<std::uint32_t> scratch(contact_scratch);
           arguments.touching = scratch.data();
           arguments.law = bed.rows.front();
           arguments.laws = bed.rows.data();

@@ -195,8 +195,7 @@ struct Springs {
   std::vector<std::uint32_t> touched, slots;
   static constexpr std::uint32_t now = 1000;
 
-  explicit Springs(std::size_t entries)
-      : before(entries), rows(entries), touched(entries, 0), slots(entries + pair_chunk + contact_padding) {
+  explicit Springs(std::size_t entries) : before(entries), rows(entries), touched(entries, 0), slots(contact_scratch) {
     for (auto& row : rows) row = {};
   }
   void load(std::size_t entry, double overlap, double reduced_radius, Random& random) {
