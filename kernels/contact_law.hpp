@@ -28,9 +28,9 @@ template <class S> struct ContactGeometry {
   Vector vx, vy, vz;    ///< v_i - v_j
   Vector sx, sy, sz;    ///< s_i + s_j, surface spins
   Vector lever;         ///< a/r: contact point's distance over the radius
-  Vector radius;        ///< R of Hertz
+  Vector root;          ///< sqrt(R overlap), R of Hertz
   Vector mass;          ///< effective
-  Vector friction_mass; ///< effective, for the friction's cap
+  Vector friction_mass; ///< walls: effective, for the friction's cap
 };
 
 /// What a contact with a memory has besides: last step's spring, which becomes this step's.
@@ -76,9 +76,9 @@ GRANDAMP_INLINE void slip_of(const ContactGeometry<S>& c, typename S::Vector clo
 /// -f_t of spring, dashpot and slider at the slip u; the memory moves on by a step.
 template <class S, ContactEffects E>
 GRANDAMP_INLINE void spring_friction(const ContactGeometry<S>& c, ContactMemory<S>& memory, typename S::Vector most,
-                                     typename S::Vector root, typename S::Vector closing, typename S::Vector ux,
-                                     typename S::Vector uy, typename S::Vector uz, typename S::Vector& rx,
-                                     typename S::Vector& ry, typename S::Vector& rz) {
+                                     typename S::Vector closing, typename S::Vector ux, typename S::Vector uy,
+                                     typename S::Vector uz, typename S::Vector& rx, typename S::Vector& ry,
+                                     typename S::Vector& rz) {
   using Vector = typename S::Vector;
   Vector mx = ux, my = uy, mz = uz;
   if (memory.moved_otherwise) {
@@ -88,8 +88,8 @@ GRANDAMP_INLINE void spring_friction(const ContactGeometry<S>& c, ContactMemory<
   }
   Spring<S>& spring = memory.spring;
   const Vector time = loading_time<S>(spring.root, c.overlap, closing, memory.time_step);
-  turn_and_ease<S>(spring, c.nx, c.ny, c.nz, root);
-  const Vector k = memory.law.stiffness * root * time;
+  turn_and_ease<S>(spring, c.nx, c.ny, c.nz, c.root);
+  const Vector k = memory.law.stiffness * c.root * time;
   spring.fx = S::fnma(k, mx, spring.fx);
   spring.fy = S::fnma(k, my, spring.fy);
   spring.fz = S::fnma(k, mz, spring.fz);
@@ -98,7 +98,7 @@ GRANDAMP_INLINE void spring_friction(const ContactGeometry<S>& c, ContactMemory<
   spring.fx = held * spring.fx;
   spring.fy = held * spring.fy;
   spring.fz = held * spring.fz;
-  spring.root = root;
+  spring.root = c.root;
   rx = S::fma(memory.law.damping, ux, S::broadcast(0.0) - spring.fx);
   ry = S::fma(memory.law.damping, uy, S::broadcast(0.0) - spring.fy);
   rz = S::fma(memory.law.damping, uz, S::broadcast(0.0) - spring.fz);
@@ -108,20 +108,19 @@ GRANDAMP_INLINE void spring_friction(const ContactGeometry<S>& c, ContactMemory<
   rz = all * rz;
 }
 
-/// `memory` only with effects that remember.
+/// friction_cap: on g, kg/s (kernels/friction.hpp). `memory` only with effects that remember.
 template <class S, ContactEffects E>
 GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVectors<S>& law,
                                     typename S::Vector friction_cap, ContactForces<S>& out,
                                     ContactMemory<S>* memory = nullptr) {
   using Vector = typename S::Vector;
-  const Vector root = hertz_root<S>(c.radius, c.overlap);
-  const Vector spring = hertz_force<S>(law.stiffness, root, c.overlap);
+  const Vector spring = hertz_force<S>(law.stiffness, c.root, c.overlap);
   if constexpr (E.energies()) out.elastic = hertz_energy<S>(spring, c.overlap);
 
   out.closing = S::fma(c.vz, c.nz, S::fma(c.vy, c.ny, c.vx * c.nx));
   Vector normal = spring;
   if constexpr (E.damped()) {
-    const Vector coefficient = damping_coefficient<S, E.damping>(law.damping, c.mass, law.stiffness, root);
+    const Vector coefficient = damping_coefficient<S, E.damping>(law.damping, c.mass, law.stiffness, c.root);
     normal = S::fma(coefficient, out.closing, spring);
     if constexpr (E.only_pushes()) {
       normal = S::max(normal, S::broadcast(0.0));
@@ -140,11 +139,11 @@ GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVector
     slip_of<S, E.rotates()>(c, out.closing, c.sx, c.sy, c.sz, ux, uy, uz);
     Vector rx, ry, rz; // -f_t
     if constexpr (E.remembers()) {
-      spring_friction<S, E>(c, *memory, law.friction * S::abs(normal), root, out.closing, ux, uy, uz, rx, ry, rz);
+      spring_friction<S, E>(c, *memory, law.friction * S::abs(normal), out.closing, ux, uy, uz, rx, ry, rz);
       if constexpr (E.energies()) out.spring = spring_energy<S>(memory->spring, memory->law.stiffness);
     } else {
       const Vector slip_squared = S::fma(uz, uz, S::fma(uy, uy, ux * ux));
-      const Vector g = coulomb_coefficient<S>(law.friction, normal, slip_squared, friction_cap * c.friction_mass);
+      const Vector g = coulomb_coefficient<S>(law.friction, normal, slip_squared, friction_cap);
       rx = g * ux;
       ry = g * uy;
       rz = g * uz;

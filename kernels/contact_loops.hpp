@@ -64,10 +64,10 @@ template <class S> GRANDAMP_INLINE void select_slots(std::size_t first, unsigned
   S::select(here, mask, to);
 }
 
-/// The share of a slip's momentum that friction may take at contacts of these rows.
-template <class S, class Row> GRANDAMP_INLINE typename S::Vector friction_shares(Row row) {
+/// The share of a slip's momentum that friction may take: the last of the row that `turn` gives for each lane.
+template <class S, class Turn> GRANDAMP_INLINE typename S::Vector friction_shares(Turn turn) {
   typename S::Row rows[S::width];
-  for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(row(lane).turn);
+  for (int lane = 0; lane < S::width; ++lane) rows[lane] = turn(lane);
   typename S::Vector share, unused, neither, nor_this;
   S::columns(rows, unused, neither, nor_this, share);
   return share;
@@ -90,15 +90,14 @@ template <class S> GRANDAMP_INLINE double largest(typename S::Vector v, double s
 /// Marks of 64 entries of a list: bit k for entry k.
 using Marks = std::uint64_t;
 inline constexpr std::size_t marked_at_once = 64;
-/// Marks to be gone through one by one; where there are more, vectors of entries are moved together.
-inline constexpr int few_marks = 20;
 
 /// Appends those marked of the entries from `first` on to the n that stand in `touching`, and with a memory their
-/// places to `slots`; returns how many there are now.
+/// places to `slots`; returns how many there are now. Few marks are gone through one by one; where there are more,
+/// vectors of entries are moved together.
 template <class S, bool remembers, class Entry>
 GRANDAMP_INLINE std::size_t take_marked(const Entry* list, std::size_t first, Marks marks, Entry* touching,
                                         std::uint32_t* slots, std::size_t n) {
-  if (__builtin_popcountll(marks) <= few_marks) {
+  if (__builtin_popcountll(marks) <= S::few_marks) {
     for (; marks != 0; marks &= marks - 1) {
       const std::size_t entry = first + static_cast<unsigned>(__builtin_ctzll(marks));
       if constexpr (remembers) slots[n] = static_cast<std::uint32_t>(entry);
@@ -138,9 +137,10 @@ GRANDAMP_INLINE std::size_t find_touching(Loop& loop, const Entry* list, std::si
 }
 
 /// Works off `count` contacts: loop.geometry, loop.forces and loop.add_rows, each of a vector of entries, how many of
-/// its lanes are used, and what is kept of it between them. In three loops: the way of one contact through its roots
-/// and divisions is so long, and has so many instructions, that a processor cannot look beyond it to the next. Without
-/// vector registers to hold a contact in, in one: what is kept would cost more than it gains.
+/// its lanes are used, and what is kept of it between them; loop.note_depth is shown all geometry. In three loops: the
+/// way of one contact through its roots and divisions is so long, and has so many instructions, that a processor cannot
+/// look beyond it to the next. Without vector registers to hold a contact in, in one: what is kept would cost more than
+/// it gains.
 template <class S, class Loop, class Entry>
 GRANDAMP_INLINE void work_off(Loop& loop, const Entry* entries, std::size_t count) {
   const Entry* const end = entries + count;
@@ -152,6 +152,7 @@ GRANDAMP_INLINE void work_off(Loop& loop, const Entry* entries, std::size_t coun
     ContactForces<S> forces[contact_batch / S::width];
     ContactGeometry<S>* c = geometry;
     for (const Entry* here = entries; here < end; here += S::width) loop.geometry(here, lanes(here), *c++);
+    loop.note_depth(entries, count, geometry);
     c = geometry;
     ContactForces<S>* f = forces;
     for (const Entry* here = entries; here < end; here += S::width) loop.forces(here, lanes(here), *c++, *f++);
@@ -163,19 +164,22 @@ GRANDAMP_INLINE void work_off(Loop& loop, const Entry* entries, std::size_t coun
       ContactGeometry<S> c;
       ContactForces<S> f;
       loop.geometry(here, lanes(here), c);
+      loop.note_depth(here, lanes(here), &c);
       loop.forces(here, lanes(here), c, f);
       loop.add_rows(here, lanes(here), c, f);
     }
   }
 }
 
-/// All contacts of a list of `count` entries, padded to list_padding.
+/// All contacts of a list of `count` entries, padded to list_padding. loop.expect is told how many vectors of contacts
+/// come, of how many of the entries that are left.
 template <class S, bool remembers, class Loop, class Entry>
 GRANDAMP_INLINE void work_off_list(Loop& loop, const Entry* list, std::size_t count, Entry* touching,
                                    std::uint32_t* slots) {
   for (std::size_t begin = 0; begin < count; begin += contact_chunk) {
     const std::size_t end = count - begin < contact_chunk ? count : begin + contact_chunk;
     const std::size_t n = find_touching<typename S::Double, remembers>(loop, list, begin, end, touching, slots);
+    loop.expect((n + S::width - 1) / S::width, end - begin, count - begin);
     // The last, partly filled vector repeats its last contact in the lanes that are not used.
     for (std::size_t k = n; k % S::width != 0; ++k) {
       touching[k] = touching[n - 1];

@@ -30,25 +30,25 @@ template <class S, MotionEffects E> struct MotionLoop {
   RowLosses lost{zero, zero, zero, zero}, early{zero, zero, zero, zero};
 
   /// Moves granule i; its new velocity.
-  Row move(std::uint32_t i) {
+  [[gnu::always_inline]] Row move(std::uint32_t i) {
     MotionRow& motion = a.granules.motion[i];
     ForceRow& force = a.granules.force[i];
     const double inverse_mass = motion.inverse_mass;
     const Row before = S::row_load(motion.velocity);
     // The fourth component of the forces counts contacts, and must not get into the inverse mass.
-    const Row by = E.counts() ? S::row_broadcast(inverse_mass) * drift : S::row_broadcast(inverse_mass * a.time_step);
-    Row after = S::row_fma(S::row_load(force.force), by, before);
+    Row after = S::row_fma(S::row_load(force.force), S::row_broadcast(inverse_mass) * drift, before);
     if constexpr (E.accelerated) after = after + kick;
-    double touching = 0.0;
-    if constexpr (E.counts()) touching = force.touching;
-    S::row_store(force.force, zero);
-
     Row spin_before = zero, spin_after = zero;
     if constexpr (E.rotates()) {
       spin_before = S::row_load(motion.surface_spin);
       spin_after = S::row_fma(S::row_load(force.turn), S::row_broadcast(inverse_mass) * turn, spin_before);
-      S::row_store(motion.surface_spin, spin_after);
     }
+    double touching = 0.0;
+    if constexpr (E.counts()) touching = force.touching;
+
+    S::row_store(motion.velocity, after);
+    if constexpr (E.rotates()) S::row_store(motion.surface_spin, spin_after);
+    S::row_store(force.force, zero);
     if constexpr (E.counts()) S::row_store(force.turn, friction_share_row<S>(touching));
 
     double* position = &a.granules.position[i].x;
@@ -59,7 +59,6 @@ template <class S, MotionEffects E> struct MotionLoop {
       if constexpr (E.energies()) observe(inverse_mass, mean, mean_spin, here);
       if constexpr (E.ledger()) dissipate(i, mean, after - before, mean_spin, spin_after - spin_before);
     }
-    S::row_store(motion.velocity, after);
     S::row_store(position, S::row_fma(drift, after, here));
 
     if constexpr (E.integration == Integration::verlet) {
@@ -160,18 +159,23 @@ template <class S, MotionEffects E> void motion_kernel(const MotionArguments& ar
   const std::uint32_t last = arguments.last;
   Vector fastest = S::broadcast(result.max_speed_squared);
   Vector total = S::broadcast(0.0);
-  Row rows[width];
-  for (std::uint32_t i = arguments.first; i < last; i += width) {
-    const std::uint32_t lanes = last - i < width ? last - i : width;
-    if (lanes == width)
-      for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = loop.move(i + lane);
-    else
-      for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = lane < lanes ? loop.move(i + lane) : loop.zero;
+  const auto note = [&](const Row(&rows)[width]) __attribute__((always_inline)) {
     Vector x, y, z, inverse_mass;
     S::columns(rows, x, y, z, inverse_mass);
     const Vector square = S::fma(z, z, S::fma(y, y, x * x));
     fastest = S::max(fastest, square);
     total = total + square;
+  };
+  std::uint32_t i = arguments.first;
+  for (; last - i >= width; i += width) {
+    Row rows[width];
+    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = loop.move(i + lane);
+    note(rows);
+  }
+  if (i < last) {
+    Row rows[width];
+    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = i + lane < last ? loop.move(i + lane) : loop.zero;
+    note(rows);
   }
   double fast[width], all[width];
   S::store(fast, fastest);

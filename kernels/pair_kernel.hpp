@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/contact_loops.hpp"
+#include "kernels/lines.hpp"
 #include "kernels/rows_ahead.hpp"
 
 namespace grandamp::kernels {
@@ -33,21 +34,27 @@ GRANDAMP_INLINE auto positions(const PositionRow* position, const RowPair* pairs
 }
 
 template <class S, ContactEffects E> struct PairLoop {
+  using D = typename S::Double;
   using Vector = typename S::Vector;
   using Row = typename S::Row;
+  using L = Lines<S>;
   static constexpr int width = S::width;
   static constexpr bool alike = E.variety == Variety::alike;
 
   const PairArguments a; // a copy, where no row that is stored can be a part of it
   ContactResult& result;
-  RowsAhead<typename S::Double, E.ledger()> ahead{a};
+  RowsAhead<E.ledger()> ahead{a};
   const Row last_flipped = S::row_set(1.0, 1.0, 1.0, -1.0);
+  /// For velocities: those of the second granule are taken off, its spin and the inverses added.
+  const typename L::Line opposed = L::of(S::row_set(-1.0, -1.0, -1.0, 1.0), S::row_set(1.0, 1.0, 1.0, 1.0));
+  /// No granule has a smaller inverse radius, rounded as it may be.
+  const Vector least_inverse_radius = S::broadcast((1.0 - 1e-6) / a.radius);
   Vector max_overlap = S::broadcast(result.max_overlap);
   Vector max_closing = S::broadcast(0.0);
+  Vector possible_overlap = S::broadcast(0.0); ///< no contact of this batch is deeper, over its smaller radius
 
   /// Which of the pairs from `entry` on touch.
   [[gnu::always_inline]] unsigned marks(std::size_t entry) {
-    using D = typename S::Double;
     const RowPair* const pairs = a.pairs + entry;
     const typename D::Vector twice = D::broadcast(2.0 * a.radius);
     unsigned marks = 0;
@@ -56,10 +63,12 @@ template <class S, ContactEffects E> struct PairLoop {
       difference<D, alike>(positions(a.granules.position, pairs + k), twice, x, y, z, radii);
       marks |= D::less(D::fma(z, z, D::fma(y, y, x * x)), radii * radii) << k;
     }
-    ahead.ask();
     __builtin_prefetch(pairs + list_ahead);
     return marks;
   }
+
+  /// So many vectors, of `tested` of the pairs that are `left`: each asks three times for rows ahead.
+  void expect(std::size_t vectors, std::size_t tested, std::size_t left) { ahead.spread(3 * vectors, tested, left); }
 
   /// From i to j, the distance and its square, the sum of the radii, and by how much they exceed it.
   void approach(const RowPair* pairs, Vector& x, Vector& y, Vector& z, Vector& square, Vector& distance, Vector& radii,
@@ -67,7 +76,6 @@ template <class S, ContactEffects E> struct PairLoop {
     if constexpr (E.precision == Precision::mixed) {
       // An overlap is the small difference of two lengths: float could not tell it. (radii^2 - distance^2) is taken in
       // double, and divided by (radii + distance).
-      using D = typename S::Double;
       typename D::Vector px[2], py[2], pz[2], sum[2], squares[2], gap[2];
       for (int half = 0; half < 2; ++half) {
         difference<D, alike>(positions(a.granules.position, pairs + half * D::width), D::broadcast(2.0 * a.radius),
@@ -90,32 +98,38 @@ template <class S, ContactEffects E> struct PairLoop {
     }
   }
 
-  [[gnu::always_inline]] void geometry(const RowPair* pairs, unsigned lanes, ContactGeometry<S>& c) {
+  [[gnu::always_inline]] void geometry(const RowPair* pairs, unsigned, ContactGeometry<S>& c) {
     Vector x, y, z, square, distance, radii;
     approach(pairs, x, y, z, square, distance, radii, c.overlap);
 
+    // The compiler may not remember the offsets that it has read: for want of other registers it would keep them in
+    // vectors, whose units are what this loop waits for.
+    asm("" : "+r"(pairs));
     const MotionRow* motion = a.granules.predicted;
-    Row rows[width];
     Vector inverse_mass, inverse_radius;
-    for (int lane = 0; lane < width; ++lane) {
-      const Row i = S::row_load(row_at(motion, pairs[lane].first_offset).velocity);
-      const Row j = S::row_load(row_at(motion, pairs[lane].second_offset).velocity);
-      if constexpr (alike)
-        rows[lane] = i - j;
-      else
-        rows[lane] = S::row_fnma(last_flipped, j, i);
-    }
-    S::columns(rows, c.vx, c.vy, c.vz, inverse_mass);
     if constexpr (E.rotates() || !alike) {
+      typename L::Line lines[width];
       for (int lane = 0; lane < width; ++lane)
-        rows[lane] = S::row_load(row_at(motion, pairs[lane].first_offset).surface_spin) +
-                     S::row_load(row_at(motion, pairs[lane].second_offset).surface_spin);
-      S::columns(rows, c.sx, c.sy, c.sz, inverse_radius);
+        lines[lane] = L::fma(opposed, L::load(row_at(motion, pairs[lane].second_offset).velocity),
+                             L::load(row_at(motion, pairs[lane].first_offset).velocity));
+      Vector columns[8];
+      L::columns(lines, columns);
+      c.vx = columns[0], c.vy = columns[1], c.vz = columns[2];
+      c.sx = columns[4], c.sy = columns[5], c.sz = columns[6];
+      inverse_mass = columns[3];
+      inverse_radius = columns[7];
+    } else {
+      Row rows[width];
+      for (int lane = 0; lane < width; ++lane)
+        rows[lane] = S::row_load(row_at(motion, pairs[lane].first_offset).velocity) -
+                     S::row_load(row_at(motion, pairs[lane].second_offset).velocity);
+      S::columns(rows, c.vx, c.vy, c.vz, inverse_mass);
     }
     Vector inverse; // of the distance, by its square: the division need not wait for the root
     if constexpr (alike) {
       inverse = S::broadcast(1.0) / square * distance;
       c.lever = distance * S::broadcast(0.5 / a.radius);
+      c.root = hertz_root<S>(S::broadcast(0.5 * a.radius), c.overlap);
       max_overlap = S::max(max_overlap, c.overlap * S::broadcast(1.0 / a.radius));
     } else {
       // One division does for four: the inverse of a product, times all but one of its factors.
@@ -124,17 +138,24 @@ template <class S, ContactEffects E> struct PairLoop {
       const Vector of_lengths = of_all * inverses, of_inverses = of_all * lengths;
       inverse = of_lengths * radii * distance;
       c.lever = of_lengths * square * distance;
-      c.radius = of_inverses * inverse_mass;
+      c.root = hertz_root<S>(of_inverses * inverse_mass, c.overlap);
       c.mass = of_inverses * inverse_radius;
-      // The larger inverse radius is at most the sum: the exact ratio is worked out only where it could be a record.
-      if (S::less(max_overlap, c.overlap * inverse_radius))
-        max_overlap = deepest(a.granules.position, pairs, lanes, c.overlap, max_overlap);
+      // The larger inverse radius is at most the sum less the least of all.
+      possible_overlap = S::max(possible_overlap, c.overlap * (inverse_radius - least_inverse_radius));
     }
     c.nx = x * inverse;
     c.ny = y * inverse;
     c.nz = z * inverse;
-    if constexpr (!alike) c.friction_mass = c.mass;
     ahead.ask();
+  }
+
+  /// Of a batch: the exact ratio is worked out only where it could be a record.
+  [[gnu::always_inline]] void note_depth(const RowPair* pairs, std::size_t count, const ContactGeometry<S>* geometry) {
+    if constexpr (!alike) {
+      if (S::less(max_overlap, possible_overlap) != 0)
+        max_overlap = deepest(a.granules.position, pairs, count, geometry, max_overlap);
+      possible_overlap = S::broadcast(0.0);
+    }
   }
 
   /// With what is the same for all contacts and is not kept with each. Member by member: as a whole it would be copied.
@@ -145,8 +166,8 @@ template <class S, ContactEffects E> struct PairLoop {
     c.vx = kept.vx, c.vy = kept.vy, c.vz = kept.vz;
     if constexpr (E.rotates()) c.sx = kept.sx, c.sy = kept.sy, c.sz = kept.sz;
     c.lever = kept.lever;
-    c.radius = S::broadcast(0.5 * a.radius);
-    c.mass = c.friction_mass = S::broadcast(0.5 * a.mass);
+    c.root = kept.root;
+    c.mass = S::broadcast(0.5 * a.mass);
     return c;
   }
 
@@ -176,13 +197,15 @@ template <class S, ContactEffects E> struct PairLoop {
       if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
     } else if constexpr (E.counts()) {
       const ForceRow* force = a.granules.force;
-      const Vector share = S::min(
-          friction_shares<S>([&](int lane) -> const ForceRow& { return row_at(force, pairs[lane].first_offset); }),
-          friction_shares<S>([&](int lane) -> const ForceRow& { return row_at(force, pairs[lane].second_offset); }));
-      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share, f);
+      const Vector share = friction_shares<S>([&](int lane) {
+        return D::row_min(D::row_load(row_at(force, pairs[lane].first_offset).turn),
+                          D::row_load(row_at(force, pairs[lane].second_offset).turn));
+      });
+      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share * c.mass, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
     max_closing = S::max(max_closing, f.closing);
+    ahead.ask();
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);
       result.contacts += lanes;
@@ -217,6 +240,7 @@ template <class S, ContactEffects E> struct PairLoop {
 
   [[gnu::always_inline]] void add_rows(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& c,
                                        const ContactForces<S>& f) {
+    ahead.ask();
     const Vector zero = S::broadcast(0.0);
     Row forces[width], turns[width];
     S::rows(f.fx, f.fy, f.fz, E.counts() ? S::broadcast(1.0) : zero, forces);
@@ -264,18 +288,19 @@ template <class S, ContactEffects E> struct PairLoop {
     }
   }
 
-  [[gnu::noinline]] static Vector deepest(const PositionRow* position, const RowPair* pairs, unsigned lanes,
-                                          Vector overlap, Vector so_far) {
-    double overlaps[width];
-    S::store(overlaps, overlap);
-    double record = largest<S>(so_far, 0.0);
-    for (unsigned lane = 0; lane < lanes; ++lane) {
-      const double i = row_at(position, pairs[lane].first_offset).radius;
-      const double j = row_at(position, pairs[lane].second_offset).radius;
-      const double ratio = overlaps[lane] / (i < j ? i : j);
-      record = ratio > record ? ratio : record;
+  [[gnu::noinline]] static Vector deepest(const PositionRow* position, const RowPair* pairs, std::size_t count,
+                                          const ContactGeometry<S>* geometry, Vector so_far) {
+    // Lanes past the last contact repeat it.
+    for (const RowPair* const end = pairs + count; pairs < end; pairs += width, ++geometry) {
+      Row rows[width];
+      for (int lane = 0; lane < width; ++lane)
+        rows[lane] = D::row_min(D::row_load(&row_at(position, pairs[lane].first_offset).x),
+                                D::row_load(&row_at(position, pairs[lane].second_offset).x));
+      Vector x, y, z, smaller;
+      S::columns(rows, x, y, z, smaller);
+      so_far = S::max(so_far, geometry->overlap / smaller);
     }
-    return S::broadcast(record);
+    return so_far;
   }
 };
 
@@ -283,8 +308,7 @@ template <class S, ContactEffects E> struct PairLoop {
 template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, ContactResult& result) {
   PairLoop<S, E> loop{.a = a, .result = result};
   work_off_list<S, E.remembers()>(loop, loop.a.pairs, loop.a.count, loop.a.touching, loop.a.springs.slots);
-  while (loop.ahead.ask()) {
-  }
+  loop.ahead.ask_all();
   result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
   result.max_closing = largest<S>(loop.max_closing, result.max_closing);
 }

@@ -5,35 +5,52 @@
 
 namespace grandamp::kernels {
 
-/// Asks memory for rows, two at a time.
-template <class S, bool ledger> class RowsAhead {
+/// Asks memory for rows, evenly: a processor keeps some two dozen questions open, and one that has to wait for its turn
+/// keeps all that comes after it waiting. Rows go to the second-level cache, since many are not wanted soon.
+template <bool ledger> class RowsAhead {
 public:
   explicit RowsAhead(const PairArguments& a)
       : granules_(a.granules), next_(a.ahead[0].first), last_(a.ahead[0].last), then_(a.ahead[1]) {}
 
+  /// Of what is left, part / whole is to be asked for in `times` calls of ask().
+  void spread(std::size_t times, std::size_t part, std::size_t whole) {
+    const std::size_t left = (next_ < last_ ? last_ - next_ : 0) + (then_.last - then_.first);
+    at_once_ = times > 0 ? static_cast<std::uint32_t>(left * part / (whole * times)) + 1 : 0;
+  }
+  [[gnu::always_inline]] void ask() {
+    for (std::uint32_t row = 0; row < at_once_ && ask_two(); row += 2) {
+    }
+  }
+  void ask_all() {
+    while (ask_two()) {
+    }
+  }
+
+private:
   /// False when there are no more.
-  [[gnu::always_inline]] bool ask() {
+  [[gnu::always_inline]] bool ask_two() {
     if (next_ >= last_) {
       if (then_.first >= then_.last) return false;
       next_ = then_.first;
       last_ = then_.last;
-      then_.last = 0;
+      then_ = {};
     }
-    __builtin_prefetch(granules_.position + next_, 1);
+    prefetch(granules_.position + next_);
     for (std::uint32_t row = next_; row < next_ + 2; ++row) {
-      __builtin_prefetch(granules_.motion + row, 1);
-      __builtin_prefetch(granules_.force + row, 1);
-      if constexpr (ledger) __builtin_prefetch(granules_.kinds.friction_granule + row, 1);
+      prefetch(granules_.motion + row);
+      prefetch(granules_.force + row);
+      if constexpr (ledger) prefetch(granules_.kinds.friction_granule + row);
     }
-    if constexpr (ledger) __builtin_prefetch(granules_.kinds.damping_granule + next_, 1);
+    if constexpr (ledger) prefetch(granules_.kinds.damping_granule + next_);
     next_ += 2;
     return true;
   }
+  template <class Row> GRANDAMP_INLINE void prefetch(const Row* row) { __builtin_prefetch(row, 0, 2); }
 
-private:
   GranuleArrays granules_;
   std::uint32_t next_, last_;
   IndexRange then_;
+  std::uint32_t at_once_ = 0;
 };
 
 } // namespace grandamp::kernels

@@ -8,13 +8,14 @@
 //   S::Double                       the set that works in double: S itself, but for the mixed sets
 //   S::Eight                        eight lanes of float (kernels/eight_floats.hpp)
 //   S::tiny                         a square far below any speed's or force's that is not zero
+//   S::few_marks                    up to which, of 64, marked entries are moved one by one (kernels/contact_loops.hpp)
 //   S::stages_apart                 whether contacts are worked off in three loops (kernels/contact_loops.hpp)
 //   load, store, broadcast          unaligned
 //   fma(a, b, c) = a b + c, fnma(a, b, c) = c - a b   (fused where the instruction set has it)
 //   fnms(a, b, c) = -c - a b        fused as those
 //   sqrt, max, min, abs
 //   less(a, b)                      one bit per lane
-//   row_load, row_store, row_broadcast, row_fma, row_fnma, row_set
+//   row_load, row_store, row_broadcast, row_fma, row_fnma, row_min, row_set
 //   columns(rows, a, b, c, d)       transposes `width` rows into four vectors
 //   rows(a, b, c, d, rows)          and back
 //   select(from, mask, to)          moves the marked ones of `width` list entries together; returns their number.

@@ -27,6 +27,7 @@ struct Avx2 {
   using Eight = EightFloatsAvx2;
   static constexpr int width = 4;
   static constexpr double tiny = 1e-200;
+  static constexpr int few_marks = 20;
   static constexpr bool stages_apart = true;
 
   GRANDAMP_INLINE Vector load(const double* p) { return _mm256_loadu_pd(p); }
@@ -49,6 +50,7 @@ struct Avx2 {
   GRANDAMP_INLINE Row row_set(double a, double b, double c, double d) { return _mm256_setr_pd(a, b, c, d); }
   GRANDAMP_INLINE Row row_fma(Row a, Row b, Row c) { return xsimd::fma(a, b, c); }
   GRANDAMP_INLINE Row row_fnma(Row a, Row b, Row c) { return xsimd::fnma(a, b, c); }
+  GRANDAMP_INLINE Row row_min(Row a, Row b) { return xsimd::min(a, b); }
 
   GRANDAMP_INLINE void columns(const Row (&r)[4], Vector& a, Vector& b, Vector& c, Vector& d) {
     const __m256d ac01 = _mm256_unpacklo_pd(r[0], r[1]);

@@ -2,13 +2,10 @@
 #pragma once
 
 #include "kernels/eight_floats_avx2.hpp"
+#include "kernels/lines_avx512.hpp"
 
 #include <immintrin.h>
 #include <xsimd/xsimd.hpp>
-
-// GCC 12 takes the undefined pass-through operands inside its own AVX-512 header for a mistake of ours.
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#pragma GCC diagnostic ignored "-Wuninitialized"
 
 namespace grandamp::kernels {
 
@@ -19,6 +16,7 @@ struct Avx512 {
   using Eight = EightFloatsAvx2;
   static constexpr int width = 8;
   static constexpr double tiny = 1e-200;
+  static constexpr int few_marks = 8;
   static constexpr bool stages_apart = true;
 
   GRANDAMP_INLINE Vector load(const double* p) { return _mm512_loadu_pd(p); }
@@ -40,6 +38,7 @@ struct Avx512 {
   GRANDAMP_INLINE Row row_set(double a, double b, double c, double d) { return _mm256_setr_pd(a, b, c, d); }
   GRANDAMP_INLINE Row row_fma(Row a, Row b, Row c) { return xsimd::fma(a, b, c); }
   GRANDAMP_INLINE Row row_fnma(Row a, Row b, Row c) { return xsimd::fnma(a, b, c); }
+  GRANDAMP_INLINE Row row_min(Row a, Row b) { return xsimd::min(a, b); }
 
   GRANDAMP_INLINE void columns(const Row (&r)[8], Vector& a, Vector& b, Vector& c, Vector& d) {
     const __m512d r04 = joined(r[0], r[4]), r15 = joined(r[1], r[5]);

@@ -14,6 +14,7 @@ struct Generic {
   using Eight = EightFloats;
   static constexpr int width = 4;
   static constexpr double tiny = 1e-200;
+  static constexpr int few_marks = 20;
   static constexpr bool stages_apart = false;
 
   GRANDAMP_INLINE Vector load(const double* p) {
@@ -46,6 +47,7 @@ struct Generic {
   GRANDAMP_INLINE Row row_set(double a, double b, double c, double d) { return Row{a, b, c, d}; }
   GRANDAMP_INLINE Row row_fma(Row a, Row b, Row c) { return a * b + c; }
   GRANDAMP_INLINE Row row_fnma(Row a, Row b, Row c) { return c - a * b; }
+  GRANDAMP_INLINE Row row_min(Row a, Row b) { return min(a, b); }
 
   GRANDAMP_INLINE void columns(const Row (&r)[4], Vector& a, Vector& b, Vector& c, Vector& d) {
     const Vector ab01 = __builtin_shuffle(r[0], r[1], Mask{0, 4, 2, 6});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/contact_loops.hpp"
+#include "kernels/lines.hpp"
 
 namespace grandamp::kernels {
 
@@ -59,15 +60,19 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
   }
 
   [[gnu::always_inline]] void geometry(const std::uint32_t* list, unsigned, ContactGeometry<S>& c) {
-    c.overlap = S::max(overlap(list, c.nx, c.ny, c.nz, c.radius), S::broadcast(0.0));
+    Vector radius;
+    c.overlap = S::max(overlap(list, c.nx, c.ny, c.nz, radius), S::broadcast(0.0));
+    c.root = hertz_root<S>(radius, c.overlap);
 
     const MotionRow* motion = a.granules.predicted;
-    Row rows[width];
-    Vector inverse_mass, inverse_radius;
-    for (int lane = 0; lane < width; ++lane) rows[lane] = S::row_load(motion[list[lane]].velocity);
-    S::columns(rows, c.vx, c.vy, c.vz, inverse_mass);
-    for (int lane = 0; lane < width; ++lane) rows[lane] = S::row_load(motion[list[lane]].surface_spin);
-    S::columns(rows, c.sx, c.sy, c.sz, inverse_radius);
+    using L = Lines<S>;
+    typename L::Line lines[width];
+    for (int lane = 0; lane < width; ++lane) lines[lane] = L::load(motion[list[lane]].velocity);
+    Vector columns[8];
+    L::columns(lines, columns);
+    c.vx = columns[0], c.vy = columns[1], c.vz = columns[2];
+    c.sx = columns[4], c.sy = columns[5], c.sz = columns[6];
+    const Vector inverse_mass = columns[3], inverse_radius = columns[7];
 
     const Vector one = S::broadcast(1.0);
     c.lever = S::fnma(c.overlap, inverse_radius, one);
@@ -77,6 +82,9 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     c.friction_mass = one / (inverse_mass + S::broadcast(a.friction_inverse_mass));
     max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
   }
+
+  void note_depth(const std::uint32_t*, std::size_t, const ContactGeometry<S>*) const {} // done by geometry
+  void expect(std::size_t, std::size_t, std::size_t) const {}                            // nothing is asked ahead
 
   [[gnu::always_inline]] void forces(const std::uint32_t* list, unsigned lanes, const ContactGeometry<S>& c,
                                      ContactForces<S>& f) {
@@ -93,9 +101,8 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       remember<S>(a.springs, slots, lanes, memory.spring);
       if constexpr (E.energies()) add_in_order<S>(f.spring, lanes, result.spring);
     } else if constexpr (E.counts()) {
-      const Vector share =
-          friction_shares<S>([&](int lane) -> const ForceRow& { return a.granules.force[list[lane]]; });
-      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share, f);
+      const Vector share = friction_shares<S>([&](int lane) { return S::row_load(a.granules.force[list[lane]].turn); });
+      contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share * c.friction_mass, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
     max_closing = S::max(max_closing, f.closing);

@@ -1,0 +1,34 @@
+// Rows of 64 bytes, which hold two rows of four: velocity and spin with the inverses of mass and radius.
+#pragma once
+
+#include "kernels/simd.hpp"
+
+namespace grandamp::kernels {
+
+/// As two rows; AVX-512 holds one in a register (kernels/lines_avx512.hpp).
+template <class S> struct Lines {
+  using D = typename S::Double;
+  using Row = typename S::Row;
+  using Vector = typename S::Vector;
+  static constexpr int width = S::width;
+  struct Line {
+    Row low, high;
+  };
+
+  GRANDAMP_INLINE Line of(Row low, Row high) { return {low, high}; }
+  GRANDAMP_INLINE Line load(const double* p) { return {D::row_load(p), D::row_load(p + 4)}; }
+  /// a b + c
+  GRANDAMP_INLINE Line fma(Line a, Line b, Line c) {
+    return {D::row_fma(a.low, b.low, c.low), D::row_fma(a.high, b.high, c.high)};
+  }
+  /// Transposes `width` lines into eight vectors.
+  GRANDAMP_INLINE void columns(const Line (&lines)[width], Vector (&to)[8]) {
+    Row rows[width];
+    for (int lane = 0; lane < width; ++lane) rows[lane] = lines[lane].low;
+    S::columns(rows, to[0], to[1], to[2], to[3]);
+    for (int lane = 0; lane < width; ++lane) rows[lane] = lines[lane].high;
+    S::columns(rows, to[4], to[5], to[6], to[7]);
+  }
+};
+
+} // namespace grandamp::kernels
