@@ -15,11 +15,10 @@ public:
   /// Of what is left, part / whole is to be asked for in `times` calls of ask().
   void spread(std::size_t times, std::size_t part, std::size_t whole) {
     const std::size_t left = (next_ < last_ ? last_ - next_ : 0) + (then_.last - then_.first);
-    at_once_ = times > 0 ? static_cast<std::uint32_t>(left * part / (whole * times)) + 1 : 0;
+    rate_ = times > 0 ? static_cast<std::uint32_t>(one * left * part / (whole * times)) + 1 : 0;
   }
   [[gnu::always_inline]] void ask() {
-    for (std::uint32_t row = 0; row < at_once_ && ask_two(); row += 2) {
-    }
+    for (due_ += rate_; due_ >= 2 * one; due_ -= 2 * one) ask_two();
   }
   void ask_all() {
     while (ask_two()) {
@@ -50,7 +49,8 @@ private:
   GranuleArrays granules_;
   std::uint32_t next_, last_;
   IndexRange then_;
-  std::uint32_t at_once_ = 0;
+  static constexpr std::uint32_t one = 256;
+  std::uint32_t rate_ = 0, due_ = 0; ///< rows per call, and not yet asked for, in parts of `one`
 };
 
 } // namespace grandamp::kernels
