@@ -17,12 +17,12 @@ template <class S, MotionEffects E> struct MotionLoop {
   const Row half = S::row_broadcast(0.5);
   const Row kick = S::row_set(a.kick[0], a.kick[1], a.kick[2], 0.0);
   const Row frame = S::row_set(a.frame_velocity[0], a.frame_velocity[1], a.frame_velocity[2], 0.0);
-  const Row drift = S::row_set(a.time_step, a.time_step, a.time_step, 0.0);
+  const Row drift = S::row_broadcast(a.time_step) * S::row_set(1.0, 1.0, 1.0, 0.0);
   const Row per_second = S::row_broadcast(1.0 / a.time_step);
   const Row twelfth = S::row_broadcast(1.0 / 12.0);
   const Row share_of_step = S::row_broadcast(a.time_step / 12.0);
   /// T/I = (5/2) turn / (m r), and s = r omega.
-  const Row turn = S::row_set(2.5 * a.time_step, 2.5 * a.time_step, 2.5 * a.time_step, 0.0);
+  const Row turn = S::row_broadcast(2.5) * drift;
   Row kinetic = zero, spinning = zero, moment = zero;
   struct RowLosses {
     Row normal_granule, normal_wall, friction_granule, friction_wall;

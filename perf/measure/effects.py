@@ -103,7 +103,7 @@ def kernel_content(counts):
             "roots": sum(i.startswith(("vsqrtpd", "vsqrtps")) for i in instructions),
             "divisions": sum(i.startswith(("vdivpd", "vdivps")) for i in instructions),
             # The second halves of the rows of motion and force: spin and turn, and nothing else is 32 bytes in.
-            "spins": len(re.findall(r"\tv\S+ .*[ ,]0x20\(%r\w+\)", code)), "instructions": len(instructions)}
+            "spins": len(re.findall(r"\tv\S+ .*[ ,]0x20\(%r(?![sb]p)\w+(?:,%r\w+,2)?\)", code)), "instructions": len(instructions)}
 
 
 def effects_of(symbol):

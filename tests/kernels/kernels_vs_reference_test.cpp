@@ -87,6 +87,23 @@ void check_rows(const Bed& bed, const Expected& expected, ContactEffects effects
   }
 }
 
+/// The deepest contact is looked for only where one could be deeper than the deepest so far: it is found if that is
+/// less by a hair, and not if it is more.
+void check_records(const PairArguments& arguments, PairKernel* kernel, const Expected& expected,
+                   ContactEffects effects) {
+  if (effects.remembers() || expected.max_overlap == 0.0) return;
+  const double hair = effects.precision == Precision::mixed ? 1.0e-4 : 1.0e-9;
+  const double within = effects.precision == Precision::mixed ? 1.0e-5 : 1.0e-12;
+  ContactResult below, above;
+  below.max_overlap = (1.0 - hair) * expected.max_overlap;
+  above.max_overlap = (1.0 + hair) * expected.max_overlap;
+  const double before = above.max_overlap;
+  kernel(arguments, below);
+  kernel(arguments, above);
+  CHECK(below.max_overlap == doctest::Approx(expected.max_overlap).epsilon(within));
+  CHECK(above.max_overlap == before);
+}
+
 void check_result(const ContactResult& result, const Expected& expected, ContactEffects effects) {
   const double within = tolerance_of(effects);
   CHECK(result.max_overlap ==
@@ -211,7 +228,7 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
         arguments.law = bed.rows.front();
         arguments.laws = bed.rows.data();
         arguments.populations = bed.populations;
-        arguments.radius = bed.granules.front().radius;
+        arguments.radius = bed.largest_radius();
         arguments.mass = bed.granules.front().mass;
         arguments.friction_cap = cap(effects);
         if (effects.remembers()) arguments.springs = springs.arguments(bed);
@@ -220,6 +237,7 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
         pair_kernel_for(machine, effects)(arguments, result);
         check_rows(bed, expected, effects, false);
         check_result(result, expected, effects);
+        check_records(arguments, pair_kernel_for(machine, effects), expected, effects);
         for (std::size_t entry = 0; entry < contacts.size() && effects.remembers(); ++entry) {
           const auto& a = bed.granules[pairs[entry].first()];
           const auto& b = bed.granules[pairs[entry].second()];
@@ -318,7 +336,7 @@ TEST_CASE("what a set of effects leaves out is not even read by its pair kernels
       if (!effects.rubs()) arguments.law.friction = nan;
       if (!effects.damped()) arguments.law.damping = nan;
       arguments.friction_cap = effects.rubs() ? cap(effects) : nan;
-      arguments.radius = bed.granules.front().radius;
+      arguments.radius = bed.largest_radius();
       arguments.mass = effects.damped() || effects.rubs() ? bed.granules.front().mass : nan;
       arguments.granules.population = nullptr;
       arguments.laws = nullptr;
@@ -362,7 +380,7 @@ TEST_CASE("pair kernels: lists longer than a chunk, and larger figures from befo
     arguments.count = pairs.size();
     arguments.touching = scratch.data();
     arguments.law = bed.rows.front();
-    arguments.radius = bed.granules.front().radius;
+    arguments.radius = bed.largest_radius();
     arguments.mass = bed.granules.front().mass;
     arguments.friction_cap = cap(effects);
     ContactResult result;

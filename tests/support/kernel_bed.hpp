@@ -4,6 +4,7 @@
 #include "kernels/dispatch.hpp"
 #include "kernels/reference.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -70,6 +71,11 @@ struct Bed {
   std::vector<MotionRow> arrival; ///< velocities that brought the granules here, where these are not `motion`
 
   std::size_t count() const { return granules.size(); }
+  double largest_radius() const {
+    double largest = 0.0;
+    for (const reference::Granule& granule : granules) largest = std::max(largest, granule.radius);
+    return largest;
+  }
   const reference::Law& law(std::size_t i, std::size_t j, Variety variety) const {
     return variety == Variety::materials ? laws[population[i] * populations + population[j]] : laws.front();
   }
