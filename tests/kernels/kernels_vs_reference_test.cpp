@@ -101,7 +101,7 @@ void check_records(const PairArguments& arguments, PairKernel* kernel, const Exp
   kernel(arguments, below);
   kernel(arguments, above);
   CHECK(below.max_overlap == doctest::Approx(expected.max_overlap).epsilon(within));
-  CHECK(above.max_overlap == before);
+  CHECK(above.max_overlap == doctest::Approx(before).epsilon(within));
 }
 
 void check_result(const ContactResult& result, const Expected& expected, ContactEffects effects) {
