@@ -63,7 +63,7 @@ struct PairArguments {
   LawRow law{};                 ///< of all pairs (not with Variety::materials)
   const LawRow* laws = nullptr; ///< populations x populations (Variety::materials)
   std::size_t populations = 1;
-  double radius = 0.0;       ///< the largest, which is every granule's with Variety::alike, m
+  double radius = 0.0;       ///< the largest (which bounds overlaps), every granule's with Variety::alike, m
   double mass = 0.0;         ///< of every granule (Variety::alike), kg
   double friction_cap = 0.0; ///< (2/7, or 1 without rotation) / dt, 1/s; Verlet: half of it
   SpringArguments springs;   ///< rows of `pairs`

@@ -6,7 +6,7 @@
 
 namespace grandamp::kernels {
 
-/// Sum of a law's constants by population, transposed to lanes.
+/// A law's constants by population, transposed to lanes.
 template <class S, class Index> GRANDAMP_INLINE LawVectors<S> gathered_laws(const LawRow* laws, Index index) {
   typename S::Row rows[S::width];
   for (int lane = 0; lane < S::width; ++lane) rows[lane] = S::row_load(&laws[index(lane)].stiffness);
@@ -73,7 +73,7 @@ template <class S, class Turn> GRANDAMP_INLINE typename S::Vector friction_share
   return share;
 }
 
-/// Adds the lanes' elastic energy in list order, whatever the lane count.
+/// Adds the lanes' energy in list order, whatever the lane count.
 template <class S> GRANDAMP_INLINE void add_in_order(typename S::Vector v, unsigned lanes, double& sum) {
   double values[S::width];
   S::store(values, v);
@@ -119,6 +119,7 @@ GRANDAMP_INLINE std::size_t take_marked(const Entry* list, std::size_t first, Ma
 template <class S, bool remembers, class Loop, class Entry>
 GRANDAMP_INLINE std::size_t find_touching(Loop& loop, const Entry* list, std::size_t begin, std::size_t end,
                                           Entry* touching, std::uint32_t* slots) {
+  static_assert(contact_chunk % marked_at_once == 0 && marked_at_once % list_padding == 0);
   Marks marks[contact_chunk / marked_at_once];
   Marks* word = marks;
   for (std::size_t first = begin; first < end; first += marked_at_once) {
@@ -136,13 +137,14 @@ GRANDAMP_INLINE std::size_t find_touching(Loop& loop, const Entry* list, std::si
   return n;
 }
 
-/// Works off `count` contacts: loop.geometry, loop.forces and loop.add_rows, each of a vector of entries, how many of
-/// its lanes are used, and what is kept of it between them; loop.note_depth is shown all geometry. In three loops: the
-/// way of one contact through its roots and divisions is so long, and has so many instructions, that a processor cannot
-/// look beyond it to the next. Without vector registers to hold a contact in, in one: what is kept would cost more than
-/// it gains.
+/// Works off `count` contacts: loop.geometry, loop.forces and loop.add_rows, each of a vector of entries, the last two
+/// of how many of its lanes are used, and what is kept of it between them; loop.note_depth is shown all geometry. In
+/// three loops: the way of one contact through its roots and divisions is so long, and has so many instructions, that a
+/// processor cannot look beyond it to the next. Without vector registers to hold a contact in, in one: what is kept
+/// would cost more than it gains.
 template <class S, class Loop, class Entry>
 GRANDAMP_INLINE void work_off(Loop& loop, const Entry* entries, std::size_t count) {
+  static_assert(contact_batch % S::width == 0 && contact_padding >= S::width);
   const Entry* const end = entries + count;
   const auto lanes = [end](const Entry* from) __attribute__((always_inline)) {
     return static_cast<unsigned>(end - from < S::width ? end - from : S::width);
@@ -151,7 +153,7 @@ GRANDAMP_INLINE void work_off(Loop& loop, const Entry* entries, std::size_t coun
     ContactGeometry<S> geometry[contact_batch / S::width];
     ContactForces<S> forces[contact_batch / S::width];
     ContactGeometry<S>* c = geometry;
-    for (const Entry* here = entries; here < end; here += S::width) loop.geometry(here, lanes(here), *c++);
+    for (const Entry* here = entries; here < end; here += S::width) loop.geometry(here, *c++);
     loop.note_depth(entries, count, geometry);
     c = geometry;
     ContactForces<S>* f = forces;
@@ -163,7 +165,7 @@ GRANDAMP_INLINE void work_off(Loop& loop, const Entry* entries, std::size_t coun
     for (const Entry* here = entries; here < end; here += S::width) {
       ContactGeometry<S> c;
       ContactForces<S> f;
-      loop.geometry(here, lanes(here), c);
+      loop.geometry(here, c);
       loop.note_depth(here, lanes(here), &c);
       loop.forces(here, lanes(here), c, f);
       loop.add_rows(here, lanes(here), c, f);

@@ -8,15 +8,14 @@
 namespace grandamp::kernels {
 
 template <class S, MotionEffects E> struct MotionLoop {
-  using Vector = typename S::Vector;
   using Row = typename S::Row;
-  static constexpr int width = S::width;
 
   const MotionArguments a; // a copy, where no row that is stored can be a part of it
   const Row zero = S::row_broadcast(0.0);
   const Row half = S::row_broadcast(0.5);
   const Row kick = S::row_set(a.kick[0], a.kick[1], a.kick[2], 0.0);
   const Row frame = S::row_set(a.frame_velocity[0], a.frame_velocity[1], a.frame_velocity[2], 0.0);
+  // Products, not row_set: no compiler needs an instruction for them that valgrind does not know.
   const Row drift = S::row_broadcast(a.time_step) * S::row_set(1.0, 1.0, 1.0, 0.0);
   const Row per_second = S::row_broadcast(1.0 / a.time_step);
   const Row twelfth = S::row_broadcast(1.0 / 12.0);
@@ -167,7 +166,7 @@ template <class S, MotionEffects E> void motion_kernel(const MotionArguments& ar
     total = total + square;
   };
   std::uint32_t i = arguments.first;
-  for (; last - i >= width; i += width) {
+  for (; i + width <= last; i += width) {
     Row rows[width];
     for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = loop.move(i + lane);
     note(rows);

@@ -1,5 +1,5 @@
 // Granule against granule: test the candidates, gather those that touch, work the law off on full lanes, add the
-// forces row by row. Rows i and j are subtracted before they are transposed: two loads and one transpose per quantity.
+// forces row by row. Rows i and j are subtracted before they are transposed: two loads and one transpose per row.
 #pragma once
 
 #include "kernels/contact_loops.hpp"
@@ -43,15 +43,15 @@ template <class S, ContactEffects E> struct PairLoop {
 
   const PairArguments a; // a copy, where no row that is stored can be a part of it
   ContactResult& result;
-  RowsAhead<E.ledger()> ahead{a};
+  RowsAhead<S, E.ledger()> ahead{a};
   const Row last_flipped = S::row_set(1.0, 1.0, 1.0, -1.0);
   /// For velocities: those of the second granule are taken off, its spin and the inverses added.
   const typename L::Line opposed = L::of(S::row_set(-1.0, -1.0, -1.0, 1.0), S::row_set(1.0, 1.0, 1.0, 1.0));
-  /// No granule has a smaller inverse radius, rounded as it may be.
-  const Vector least_inverse_radius = S::broadcast((1.0 - 1e-6) / a.radius);
+  const Vector least_inverse_radius = S::broadcast(1.0 / a.radius);
   Vector max_overlap = S::broadcast(result.max_overlap);
   Vector max_closing = S::broadcast(0.0);
-  Vector possible_overlap = S::broadcast(0.0); ///< no contact of this batch is deeper, over its smaller radius
+  /// No contact of this batch is deeper, over its smaller radius, but for rounding.
+  Vector possible_overlap = S::broadcast(0.0);
 
   /// Which of the pairs from `entry` on touch.
   [[gnu::always_inline]] unsigned marks(std::size_t entry) {
@@ -98,7 +98,7 @@ template <class S, ContactEffects E> struct PairLoop {
     }
   }
 
-  [[gnu::always_inline]] void geometry(const RowPair* pairs, unsigned, ContactGeometry<S>& c) {
+  [[gnu::always_inline]] void geometry(const RowPair* pairs, ContactGeometry<S>& c) {
     Vector x, y, z, square, distance, radii;
     approach(pairs, x, y, z, square, distance, radii, c.overlap);
 
@@ -149,10 +149,10 @@ template <class S, ContactEffects E> struct PairLoop {
     ahead.ask();
   }
 
-  /// Of a batch: the exact ratio is worked out only where it could be a record.
+  /// Of a batch: the exact ratio is worked out only where it could be a record, rounded as the bound may be in float.
   [[gnu::always_inline]] void note_depth(const RowPair* pairs, std::size_t count, const ContactGeometry<S>* geometry) {
     if constexpr (!alike) {
-      if (S::less(max_overlap, possible_overlap) != 0)
+      if (S::less(max_overlap * S::broadcast(1.0 - 1e-6), possible_overlap) != 0)
         max_overlap = deepest(a.granules.position, pairs, count, geometry, max_overlap);
       possible_overlap = S::broadcast(0.0);
     }
@@ -204,7 +204,7 @@ template <class S, ContactEffects E> struct PairLoop {
       contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share * c.mass, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
-    max_closing = S::max(max_closing, f.closing);
+    max_closing = S::max(f.closing, max_closing); // a NaN leaves it as it was
     ahead.ask();
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);

@@ -7,15 +7,16 @@ namespace grandamp::kernels {
 
 /// Asks memory for rows, evenly: a processor keeps some two dozen questions open, and one that has to wait for its turn
 /// keeps all that comes after it waiting. Rows go to the second-level cache, since many are not wanted soon.
-template <bool ledger> class RowsAhead {
+template <class S, bool ledger> class RowsAhead {
 public:
   explicit RowsAhead(const PairArguments& a)
       : granules_(a.granules), next_(a.ahead[0].first), last_(a.ahead[0].last), then_(a.ahead[1]) {}
 
   /// Of what is left, part / whole is to be asked for in `times` calls of ask().
   void spread(std::size_t times, std::size_t part, std::size_t whole) {
-    const std::size_t left = (next_ < last_ ? last_ - next_ : 0) + (then_.last - then_.first);
-    rate_ = times > 0 ? static_cast<std::uint32_t>(one * left * part / (whole * times)) + 1 : 0;
+    const std::size_t left =
+        (next_ < last_ ? last_ - next_ : 0) + (then_.first < then_.last ? then_.last - then_.first : 0);
+    rate_ = left > 0 && times > 0 ? static_cast<std::uint32_t>(one * left * part / (whole * times)) + 1 : 0;
   }
   [[gnu::always_inline]] void ask() {
     for (due_ += rate_; due_ >= 2 * one; due_ -= 2 * one) ask_two();
@@ -50,7 +51,7 @@ private:
   std::uint32_t next_, last_;
   IndexRange then_;
   static constexpr std::uint32_t one = 256;
-  std::uint32_t rate_ = 0, due_ = 0; ///< rows per call, and not yet asked for, in parts of `one`
+  std::uint32_t rate_ = 0, due_ = 0; ///< rows per call, and not yet asked for; a row counts `one`
 };
 
 } // namespace grandamp::kernels

@@ -59,7 +59,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     return left < list_padding ? marks & ((1U << left) - 1U) : marks; // the padding touches nothing
   }
 
-  [[gnu::always_inline]] void geometry(const std::uint32_t* list, unsigned, ContactGeometry<S>& c) {
+  [[gnu::always_inline]] void geometry(const std::uint32_t* list, ContactGeometry<S>& c) {
     Vector radius;
     c.overlap = S::max(overlap(list, c.nx, c.ny, c.nz, radius), S::broadcast(0.0));
     c.root = hertz_root<S>(radius, c.overlap);
@@ -105,7 +105,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share * c.friction_mass, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
-    max_closing = S::max(max_closing, f.closing);
+    max_closing = S::max(f.closing, max_closing); // a NaN leaves it as it was
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);
       result.contacts += lanes;
