@@ -13,7 +13,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
   using Row = typename S::Row;
   static constexpr int width = S::width;
 
-  const WallArguments& a;
+  const WallArguments& a; // no copy, with which the portable kernel was slower
   WallResult& result;
   Vector max_overlap = S::broadcast(0.0);
   Vector max_closing = S::broadcast(0.0);
