@@ -35,49 +35,35 @@ RowPair* candidate_kernel(const CandidateArguments& a, IndexRange own, std::uint
   return to;
 }
 
-/// Lays the ranges' coordinates side by side, and behind them what is near nobody, wherever that is; returns how many
-/// there are.
+/// In float, eight at a time. The rows around hold a few granules each in three cells: one vector, as a rule, of which
+/// those past the cells are masked, so that no branch depends on how many there are.
 template <class S, bool alike>
-std::uint32_t bring_together(const CoarseArguments& a, const CoarseScratch& near, IndexRange own, std::uint32_t own_end,
-                             const IndexRange* ranges, int count) {
-  using F = typename S::Eight;
-  std::uint32_t n = 0;
-  const auto bring = [&](std::uint32_t first, std::uint32_t last) __attribute__((always_inline)) {
-    for (std::uint32_t j = first, to = n; j < last; j += F::width, to += F::width) {
-      F::store(near.x + to, F::load(a.x + j));
-      F::store(near.y + to, F::load(a.y + j));
-      F::store(near.z + to, F::load(a.z + j));
-      if constexpr (!alike) F::store(near.radius + to, F::load(a.radius + j));
-      F::store_offsets(near.offset + to, j);
-    }
-    n += last - first;
-  };
-  if (own_end > own.first) bring(own.first, own_end);
-  for (int k = 0; k < count; ++k)
-    if (ranges[k].last > ranges[k].first) bring(ranges[k].first, ranges[k].last);
-  F::store(near.x + n, F::broadcast(__builtin_nanf("")));
-  return n;
-}
-
-/// In float, eight at a time. The ranges of a cell are short, so they are brought together first: once for all the
-/// granules of the cell.
-template <class S, bool alike>
-RowPair* coarse_kernel(const CoarseArguments& arguments, IndexRange own, std::uint32_t own_end,
-                       const IndexRange* ranges, int count, RowPair* to) {
+RowPair* coarse_kernel(const CoarseArguments& arguments, const CellRows& cell_rows, RowPair* to) {
   using F = typename S::Eight;
   using Vector = typename F::Vector;
   const CoarseArguments a = arguments; // where nothing that is stored can be a part of it
-  const CoarseScratch near = a.scratch;
-  const std::uint32_t n = bring_together<S, alike>(a, near, own, own_end, ranges, count);
-  for (std::uint32_t i = own.first; i < own.last; ++i) {
-    const Vector x = F::broadcast(a.x[i]), y = F::broadcast(a.y[i]), z = F::broadcast(a.z[i]);
-    const Vector reach = F::broadcast(alike ? a.reach : a.reach + a.radius[i]);
-    for (std::uint32_t k = own_end > own.first ? i - own.first + 1 : 0; k < n; k += F::width) {
-      const Vector dx = F::load(near.x + k) - x, dy = F::load(near.y + k) - y, dz = F::load(near.z + k) - z;
-      const Vector square = F::fma(dz, dz, F::fma(dy, dy, dx * dx));
-      Vector limit = reach;
-      if constexpr (!alike) limit = limit + F::load(near.radius + k);
-      to += F::select_partners(i, near.offset + k, F::less(square, limit * limit), to);
+  const CellRows rows = cell_rows;
+  for (std::uint32_t cell = 0; cell < rows.cells; ++cell) {
+    const std::uint32_t before = cell > 0 ? cell - 1 : 0, after = cell + 2 < rows.cells ? cell + 2 : rows.cells;
+    IndexRange beside[most_rows_beside];
+    for (int k = 0; k < rows.count; ++k) beside[k] = {rows.beside[k][before], rows.beside[k][after]};
+    for (std::uint32_t i = rows.own[cell]; i < rows.own[cell + 1]; ++i) {
+      const Vector x = F::broadcast(a.x[i]), y = F::broadcast(a.y[i]), z = F::broadcast(a.z[i]);
+      const Vector reach = F::broadcast(alike ? a.reach : a.reach + a.radius[i]);
+      const auto look = [&](std::uint32_t j, std::uint32_t last) __attribute__((always_inline)) {
+        do {
+          const Vector dx = F::load(a.x + j) - x, dy = F::load(a.y + j) - y, dz = F::load(a.z + j) - z;
+          const Vector square = F::fma(dz, dz, F::fma(dy, dy, dx * dx));
+          Vector limit = reach;
+          if constexpr (!alike) limit = limit + F::load(a.radius + j);
+          const std::uint32_t left = last - j;
+          const unsigned listed = (1U << (left < F::width ? left : F::width)) - 1U;
+          to += F::select_partners(i, j, F::less(square, limit * limit) & listed, to);
+          j += F::width;
+        } while (j < last);
+      };
+      if (rows.within) look(i + 1, rows.own[after]);
+      for (int k = 0; k < rows.count; ++k) look(beside[k].first, beside[k].last);
     }
   }
   return to;

@@ -4,9 +4,9 @@
 //   Vector, width, load and store (unaligned), broadcast, and the operators of the compiler's vector extension
 //   fma(a, b, c) = a b + c                     fused where the instruction set has it
 //   less(a, b)                                 one bit per lane
-//   store_offsets(to, row)                     those of the eight rows from `row`
-//   select_partners(first, offsets, mask, to)  the pairs of row `first` and the marked offsets; returns their number.
-//                                              Writes eight.
+//   select_partners(first, base, mask, to)     the pairs of row `first` and the marked ones of the eight rows from
+//   `base`;
+//                                              returns their number. Writes eight.
 #pragma once
 
 #include "kernels/simd.hpp"
@@ -31,14 +31,10 @@ struct EightFloats {
     return static_cast<unsigned>(mask);
   }
   GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return a * b + c; }
-  GRANDAMP_INLINE void store_offsets(std::uint32_t* to, std::uint32_t row) {
-    for (unsigned lane = 0; lane < width; ++lane) to[lane] = (row + lane) << offset_bits;
-  }
-  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, const std::uint32_t* offsets, unsigned mask,
-                                           RowPair* to) {
+  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, RowPair* to) {
     unsigned n = 0;
     for (unsigned lane = 0; lane < width; ++lane) {
-      to[n] = {first << offset_bits, offsets[lane]};
+      to[n] = RowPair::of(first, base + lane);
       n += (mask >> lane) & 1U;
     }
     return n;

@@ -35,23 +35,16 @@ struct EightFloatsAvx2 {
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));
   }
   GRANDAMP_INLINE Vector fma(Vector a, Vector b, Vector c) { return _mm256_fmadd_ps(a, b, c); }
-  GRANDAMP_INLINE void store_offsets(std::uint32_t* to, std::uint32_t row) {
-    constexpr int next = 1 << offset_bits;
-    const __m256i first = _mm256_set1_epi32(static_cast<int>(row << offset_bits));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
-                        _mm256_add_epi32(first, _mm256_setr_epi32(0, next, 2 * next, 3 * next, 4 * next, 5 * next,
-                                                                  6 * next, 7 * next)));
-  }
-  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, const std::uint32_t* offsets, unsigned mask,
-                                           RowPair* to) {
+  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, RowPair* to) {
     const __m256i firsts = _mm256_set1_epi32(static_cast<int>(first << offset_bits));
-    const __m256i order =
+    const __m256i lanes =
         _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(eight_select_table.row + mask)));
-    const __m256i marked =
-        _mm256_permutevar8x32_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(offsets)), order);
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_unpacklo_epi32(firsts, marked));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to + 4), _mm256_unpackhi_epi32(firsts, marked));
-    return static_cast<unsigned>(__builtin_popcount(mask));
+    const __m256i partners = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(base << offset_bits)),
+                                              _mm256_slli_epi32(lanes, offset_bits));
+    const auto found = static_cast<unsigned>(__builtin_popcount(mask));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_unpacklo_epi32(firsts, partners));
+    if (found > 4) _mm256_storeu_si256(reinterpret_cast<__m256i*>(to + 4), _mm256_unpackhi_epi32(firsts, partners));
+    return found;
   }
 };
 

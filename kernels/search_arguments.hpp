@@ -24,25 +24,31 @@ template <class Real> struct SearchArguments {
 /// In metres; finds exactly the pairs closer than their radii and the skin.
 using CandidateArguments = SearchArguments<double>;
 
-/// Room for all granules of the ranges, and 2 list_padding more.
-struct CoarseScratch {
-  float *x = nullptr, *y = nullptr, *z = nullptr, *radius = nullptr;
-  std::uint32_t* offset = nullptr;
+/// Of a cell's 13 neighbours that come after it, those that are not in its own row are in these.
+inline constexpr int most_rows_beside = 4;
+
+/// Rows of cells along the fastest axis, each told by where its cells begin and where the last ends: `cells` + 1
+/// entries.
+struct CellRows {
+  std::uint32_t cells = 0;
+  const std::uint32_t* own = nullptr;
+  bool within = true; ///< pairs within the own row are looked for, too
+  int count = 0;
+  const std::uint32_t* beside[most_rows_beside] = {};
 };
 
 /// In any unit that makes a cell's length about 1. `reach` has to allow for what float leaves out: the kernel is to
 /// find every pair, and some more, which SplitKernel drops.
-struct CoarseArguments : SearchArguments<float> {
-  CoarseScratch scratch;
-};
+using CoarseArguments = SearchArguments<float>;
 
 /// Granules [own.first, own.last) against those after them up to own_end, and against `count` ranges. Appends at `to`
 /// (which must have room for every pair tested, and list_padding more) and returns the new end.
-template <class Arguments>
-using SearchKernel = RowPair*(const Arguments&, IndexRange own, std::uint32_t own_end, const IndexRange* ranges,
-                              int count, RowPair* to);
-using CandidateKernel = SearchKernel<CandidateArguments>;
-using CoarseKernel = SearchKernel<CoarseArguments>;
+using CandidateKernel = RowPair*(const CandidateArguments&, IndexRange own, std::uint32_t own_end,
+                                 const IndexRange* ranges, int count, RowPair* to);
+/// The granules of the own row, each against those after it in its cell and the next, and those of its cell and both
+/// next to it of the rows beside. Appends at `to` (which must have room for every pair tested, and list_padding more)
+/// and returns the new end.
+using CoarseKernel = RowPair*(const CoarseArguments&, const CellRows&, RowPair* to);
 
 struct SplitArguments {
   const PositionRow* position = nullptr;

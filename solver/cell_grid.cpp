@@ -32,9 +32,9 @@ GridShape make_grid_shape(const Vector3& size, double cell_length, std::size_t g
 
 namespace {
 
-/// Granules are cut into this many pieces for the parallel count; a function of their number alone.
-std::size_t pieces_for(std::uint32_t count) {
-  return count < 20000 ? 1 : 8;
+/// Granules are cut into this many pieces for the parallel count. Their order comes out the same whatever it is.
+std::size_t pieces_for(std::uint32_t count, const Team& team) {
+  return count < 20000 ? 1 : static_cast<std::size_t>(std::min(team.threads(), 8));
 }
 
 std::uint32_t piece_begin(std::uint32_t count, std::size_t pieces, std::size_t piece) {
@@ -51,9 +51,9 @@ void CellGrid::sort(Granules& granules, const GridShape& shape, const Team& team
     order_.reset(count);
   }
   const std::size_t cells = shape_.total();
-  const std::size_t pieces = pieces_for(count);
+  const std::size_t pieces = pieces_for(count, team);
   start_.assign(cells + 1, 0);
-  std::vector<std::vector<std::uint32_t>> counts(pieces); // of each piece and cell, then where its next granule goes
+  counts_.resize(pieces);
 
   const auto cell_along = [&](const kernels::PositionRow& row, std::size_t k) {
     const double x = (&row.x)[shape_.axis[k]] * shape_.inverse_length[k];
@@ -61,25 +61,26 @@ void CellGrid::sort(Granules& granules, const GridShape& shape, const Team& team
     return x > 0.0 ? (x < last ? static_cast<int>(x) : last) : 0; // whatever x is, a cell: guards come later
   };
   team.each(pieces, [&](std::size_t piece) {
-    counts[piece].assign(cells, 0);
+    std::vector<std::uint32_t>& counts = counts_[piece];
+    counts.assign(cells, 0);
     const std::uint32_t end = piece_begin(count, pieces, piece + 1);
     for (std::uint32_t i = piece_begin(count, pieces, piece); i < end; ++i) {
       const kernels::PositionRow& row = granules.position[i];
       const std::size_t cell = index(cell_along(row, 0), cell_along(row, 1), cell_along(row, 2));
       cell_of_[i] = static_cast<std::uint32_t>(cell);
-      ++counts[piece][cell];
+      ++counts[cell];
     }
     granules.keep_shares(piece_begin(count, pieces, piece), end);
   });
   std::uint32_t next = 0;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     start_[cell] = next;
-    for (auto& of_piece : counts) next += std::exchange(of_piece[cell], next);
+    for (auto& of_piece : counts_) next += std::exchange(of_piece[cell], next);
   }
   start_[cells] = next;
   team.each(pieces, [&](std::size_t piece) {
     const std::uint32_t end = piece_begin(count, pieces, piece + 1);
-    for (std::uint32_t i = piece_begin(count, pieces, piece); i < end; ++i) order_[counts[piece][cell_of_[i]]++] = i;
+    for (std::uint32_t i = piece_begin(count, pieces, piece); i < end; ++i) order_[counts_[piece][cell_of_[i]]++] = i;
   });
   team.each(pieces, [&](std::size_t piece) {
     granules.permute(order_.data(), piece_begin(count, pieces, piece), piece_begin(count, pieces, piece + 1));

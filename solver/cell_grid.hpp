@@ -35,6 +35,8 @@ public:
   /// First row of each cell; one more entry than cells.
   const std::vector<std::uint32_t>& start() const noexcept { return start_; }
 
+  /// First row of each cell of a line of cells along the fastest axis, and where the line ends.
+  const std::uint32_t* row_start(int middle, int slow) const { return start_.data() + index(0, middle, slow); }
   std::uint32_t cell_start(int fast, int middle, int slow) const { return start_[index(fast, middle, slow)]; }
   std::size_t index(int fast, int middle, int slow) const {
     return (static_cast<std::size_t>(slow) * static_cast<std::size_t>(shape_.cells[1]) +
@@ -48,6 +50,8 @@ public:
 private:
   GridShape shape_;
   std::vector<std::uint32_t> start_;
+  /// Scratch of sort(): of each piece and cell its granules, then where the next of them goes.
+  std::vector<std::vector<std::uint32_t>> counts_;
   RowArray<std::uint32_t> cell_of_;
   RowArray<std::uint32_t> order_;
 };

@@ -1,5 +1,6 @@
-// Who does the work: the calling thread alone, or a TBB arena. Work is always cut into the same pieces, whatever the
-// number of threads, and each piece has its own results, so that the bits do not depend on it.
+// Who does the work: the calling thread alone, or a TBB arena. Work whose results could depend on how it is cut is
+// always cut into the same pieces, whatever the number of threads, and each piece has its own results, so that the bits
+// do not.
 #pragma once
 
 #include <cstddef>

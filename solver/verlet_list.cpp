@@ -137,6 +137,18 @@ void look_along(const Wall& wall, const CellGrid& grid, int first_layer, int las
   }
 }
 
+/// Pairs that a coarse search of a row may find.
+std::size_t room_for(const kernels::CellRows& rows) {
+  std::size_t room = kernels::list_padding;
+  for (std::uint32_t cell = 0; cell < rows.cells; ++cell) {
+    const std::uint32_t before = cell > 0 ? cell - 1 : 0, after = std::min(cell + 2, rows.cells);
+    std::size_t tests = rows.within ? rows.own[after] - rows.own[cell] : 0;
+    for (int k = 0; k < rows.count; ++k) tests += rows.beside[k][after] - rows.beside[k][before];
+    room += tests * (rows.own[cell + 1] - rows.own[cell]);
+  }
+  return room;
+}
+
 } // namespace
 
 std::size_t PairRange::to_test(double share) const {
@@ -144,16 +156,6 @@ std::size_t PairRange::to_test(double share) const {
   while (classes < gap_classes && share >= static_cast<double>(classes) / static_cast<double>(gap_classes)) ++classes;
   const std::size_t padded = (end[classes - 1] - first + kernels::list_padding - 1) / kernels::list_padding;
   return std::min(padded * kernels::list_padding, end[gap_classes - 1] - first);
-}
-
-kernels::CoarseScratch NearScratch::room_for(std::size_t entries) {
-  if (entries > entries_) {
-    entries_ = 2 * entries;
-    coordinates_.resize(4 * entries_);
-    offsets_.resize(entries_);
-  }
-  float* const x = coordinates_.data();
-  return {x, x + entries_, x + 2 * entries_, x + 3 * entries_, offsets_.data()};
 }
 
 RowPair* PairList::room_for(std::size_t more) {
@@ -204,7 +206,6 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
   segment.inner.clear();
   segment.boundary.clear();
   segment.candidates = 0;
-  kernels::CoarseArguments here = arguments;
   Block block;
   block.first = segment.first;
   block.front = segment.first;
@@ -220,47 +221,39 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
     block.first = last;
     block.beyond = {};
   };
-  const auto append = [&](PairList& list, IndexRange own, std::uint32_t own_end, const IndexRange* ranges, int count) {
-    std::size_t tests = (own_end > own.first ? own_end - own.first : 0) + kernels::list_padding;
-    for (int k = 0; k < count; ++k) tests += ranges[k].last - ranges[k].first + kernels::list_padding;
-    RowPair* to = list.room_for(tests * (own.last - own.first) + kernels::list_padding);
-    here.scratch = segment.near.room_for(tests + kernels::list_padding);
-    list.set_end(search.coarse(here, own, own_end, ranges, count, to));
+  const auto append = [&](PairList& list, const kernels::CellRows& rows) {
+    list.set_end(search.coarse(arguments, rows, list.room_for(grandamp::room_for(rows))));
   };
 
   for (int slow = first_layer; slow < last_layer; ++slow) {
     const bool next_is_outside = slow + 1 == last_layer;
-    for (int middle = 0; middle < shape.cells[1]; ++middle)
-      for (int fast = 0; fast < shape.cells[0]; ++fast) {
-        const IndexRange own{grid_.cell_start(fast, middle, slow), grid_.start()[grid_.index(fast, middle, slow) + 1]};
-        if (own.first == own.last) continue;
-        if (own.first - block.first >= kernels::block_granules) finish_block(own.first);
-        const int low = std::max(fast - 1, 0), high = std::min(fast + 1, shape.cells[0] - 1);
-        const auto row_range = [&](int m, int s) {
-          return IndexRange{grid_.cell_start(low, m, s), grid_.start()[grid_.index(high, m, s) + 1]};
-        };
-        // 13 of the 26 neighbours: the next cell of the row, the next row, and three rows of the next layer.
-        const std::uint32_t own_end = grid_.start()[grid_.index(high, middle, slow) + 1];
-        std::array<IndexRange, 4> ranges;
-        int count = 0;
-        if (middle + 1 < shape.cells[1]) ranges[static_cast<std::size_t>(count++)] = row_range(middle + 1, slow);
-        if (next_is_outside) {
-          append(segment.inner, own, own_end, ranges.data(), count);
-          count = 0;
-        }
-        if (slow + 1 < shape.cells[2])
-          for (int m = std::max(middle - 1, 0); m <= std::min(middle + 1, shape.cells[1] - 1); ++m)
-            ranges[static_cast<std::size_t>(count++)] = row_range(m, slow + 1);
-        const std::uint32_t reached = count == 0 ? own_end : ranges[static_cast<std::size_t>(count - 1)].last;
-        if (next_is_outside) {
-          append(segment.boundary, own, 0, ranges.data(), count);
-          block.front = std::max(block.front, own_end);
-          if (count > 0) block.beyond = {block.beyond.last > 0 ? block.beyond.first : ranges[0].first, reached};
-        } else {
-          append(segment.inner, own, own_end, ranges.data(), count);
-          block.front = std::max(block.front, reached);
-        }
+    for (int middle = 0; middle < shape.cells[1]; ++middle) {
+      kernels::CellRows rows;
+      rows.cells = static_cast<std::uint32_t>(shape.cells[0]);
+      rows.own = grid_.row_start(middle, slow);
+      const std::uint32_t first = rows.own[0], end = rows.own[rows.cells];
+      if (first == end) continue;
+      if (first - block.first >= kernels::block_granules) finish_block(first);
+      // 13 of the 26 neighbours of a cell: the next one of the row, the next row, and three rows of the next layer.
+      const auto look_at = [&](int m, int s) { rows.beside[rows.count++] = grid_.row_start(m, s); };
+      const auto reached = [&] { return rows.count == 0 ? end : rows.beside[rows.count - 1][rows.cells]; };
+      if (middle + 1 < shape.cells[1]) look_at(middle + 1, slow);
+      if (next_is_outside) {
+        append(segment.inner, rows);
+        block.front = std::max(block.front, reached());
+        rows.count = 0;
+        rows.within = false;
       }
+      if (slow + 1 < shape.cells[2])
+        for (int m = std::max(middle - 1, 0); m <= std::min(middle + 1, shape.cells[1] - 1); ++m) look_at(m, slow + 1);
+      if (!next_is_outside) {
+        append(segment.inner, rows);
+        block.front = std::max(block.front, reached());
+      } else if (rows.count > 0) {
+        append(segment.boundary, rows);
+        block.beyond = {block.beyond.last > 0 ? block.beyond.first : rows.beside[0][0], reached()};
+      }
+    }
   }
   finish_block(segment.last);
 }
@@ -276,7 +269,7 @@ void VerletList::search_all(Granules& granules, const Vector3& size, const std::
                             const Search& search, const Team& team) {
   cut_into_segments(granules.count());
   const Coordinates<float> coordinates(granules, search.cell_length);
-  const kernels::CoarseArguments arguments{coordinates.arguments(reach_of(search) + coarse_margin(search, size)), {}};
+  const kernels::CoarseArguments arguments = coordinates.arguments(reach_of(search) + coarse_margin(search, size));
 
   team.each(segments_.size(), [&](std::size_t s) {
     coordinates.fill(granules, grid_.layer_start(segment_layers_[s]), grid_.layer_start(segment_layers_[s + 1]));

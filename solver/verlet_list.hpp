@@ -33,17 +33,6 @@ private:
   std::size_t count_ = 0;
 };
 
-/// Where the granules around a cell are brought together.
-class NearScratch {
-public:
-  kernels::CoarseScratch room_for(std::size_t entries);
-
-private:
-  std::vector<float> coordinates_;
-  std::vector<std::uint32_t> offsets_;
-  std::size_t entries_ = 0;
-};
-
 /// Granules near one wall.
 struct WallList {
   std::vector<std::uint32_t> granules; ///< padded
@@ -78,7 +67,6 @@ struct Segment {
   std::size_t candidates = 0;             ///< without padding
   std::vector<kernels::RowPair> touching; ///< scratch of the sweep
   PairList far_pairs;                     ///< scratch of the build
-  NearScratch near;                       ///< scratch of the build
   std::vector<std::uint32_t> touching_wall;
 };
 

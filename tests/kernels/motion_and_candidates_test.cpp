@@ -205,7 +205,7 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
             }
 }
 
-TEST_CASE("candidate kernels: every instruction set finds exactly the pairs within reach, in float all of them") {
+TEST_CASE("candidate kernels: every instruction set finds exactly the pairs within reach") {
   Random random{std::mt19937_64(77)};
   const std::uint32_t count = 203;
   // A vector load at the end of a range may look past it: what stands there must not matter.
@@ -216,16 +216,6 @@ TEST_CASE("candidate kernels: every instruction set finds exactly the pairs with
     z[i] = random(0.0, 0.01);
     radius[i] = random(0.5e-3, 2.0e-3);
   }
-  const auto in_float = [](const std::vector<double>& metres) {
-    std::vector<float> millimetres;
-    for (const double value : metres) millimetres.push_back(static_cast<float>(1.0e3 * value));
-    return millimetres;
-  };
-  const std::vector<float> coarse_x = in_float(x), coarse_y = in_float(y), coarse_z = in_float(z),
-                           coarse_radius = in_float(radius);
-  std::array<std::vector<float>, 4> near;
-  for (auto& coordinate : near) coordinate.resize(2 * count);
-  std::vector<std::uint32_t> offsets(2 * count);
   const double skin = 0.2e-3, common = 1.2e-3;
   for (const InstructionSet machine : machines())
     for (const bool alike : {true, false})
@@ -265,28 +255,83 @@ TEST_CASE("candidate kernels: every instruction set finds exactly the pairs with
                                                             static_cast<int>(ranges.size()), room.data());
         for (const RowPair* pair = room.data(); pair != end; ++pair) found.insert({pair->first(), pair->second()});
         CHECK(found == expected);
-
-        // In millimetres, with a margin: no pair less, none twice, and none more than the margin allows.
-        CoarseArguments coarse;
-        coarse.x = coarse_x.data();
-        coarse.y = coarse_y.data();
-        coarse.z = coarse_z.data();
-        coarse.radius = alike ? nullptr : coarse_radius.data();
-        const double margin = 1.0e-8;
-        coarse.reach = static_cast<float>(1.0e3 * (arguments.reach + margin));
-        coarse.scratch = {near[0].data(), near[1].data(), near[2].data(), near[3].data(), offsets.data()};
-        // Nor what an earlier cell has left there.
-        for (auto& coordinate : near) std::fill(coordinate.begin(), coordinate.end(), trial % 2 == 0 ? 1e30F : 0.0F);
-        std::fill(offsets.begin(), offsets.end(), ~0U);
-        end = coarse_kernel_for(machine, alike)(coarse, own, own_end, ranges.data(), static_cast<int>(ranges.size()),
-                                                room.data());
-        found.clear();
-        for (const RowPair* pair = room.data(); pair != end; ++pair) found.insert({pair->first(), pair->second()});
-        for (const auto& pair : expected) CHECK(found.count(pair) == 1);
-        for (const auto& [i, j] : found) {
-          CHECK(found.count({i, j}) == 1);
-          CHECK(std::hypot(x[i] - x[j], y[i] - y[j], z[i] - z[j]) <
-                arguments.reach + (alike ? 0.0 : radius[i] + radius[j]) + 2.0 * margin);
-        }
       }
+}
+
+TEST_CASE("coarse kernels: every instruction set finds all pairs within reach of rows of cells, and hardly any other") {
+  Random random{std::mt19937_64(78)};
+  const std::uint32_t count = 420;
+  const double skin = 0.2e-3, common = 1.2e-3, margin = 1.0e-8;
+  std::array<std::vector<double>, 4> metres;
+  for (auto& column : metres) column.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) metres[k][i] = random(0.0, 0.01);
+    metres[3][i] = random(0.5e-3, 2.0e-3);
+  }
+  // In millimetres. What stands behind the last granule must not matter: once it is near everybody.
+  std::array<std::vector<float>, 4> column;
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (const double value : metres[k]) column[k].push_back(static_cast<float>(1.0e3 * value));
+    column[k].resize(count + list_padding, k < 3 ? 5.0F : 100.0F);
+  }
+  std::size_t tested = 0;
+  for (const InstructionSet machine : machines())
+    for (const bool alike : {true, false})
+      for (int trial = 0; trial < 60; ++trial) {
+        CAPTURE(std::string(name(machine)));
+        CAPTURE(alike);
+        CAPTURE(trial);
+        // Cells of up to `most` granules: none, a vector's fill and more; every row begins where the one before ends.
+        const std::uint32_t cells = 1 + static_cast<std::uint32_t>(trial % 5), most = trial % 3 == 0 ? 14 : 5;
+        std::array<std::vector<std::uint32_t>, 1 + most_rows_beside> starts;
+        std::uint32_t next = static_cast<std::uint32_t>(trial % 2);
+        for (auto& row : starts) {
+          for (std::uint32_t cell = 0; cell < cells; ++cell) {
+            row.push_back(next);
+            next += static_cast<std::uint32_t>(random.engine() % (most + 1));
+          }
+          row.push_back(next);
+        }
+        REQUIRE(next <= count);
+        CellRows rows;
+        rows.cells = cells;
+        rows.own = starts[0].data();
+        rows.count = trial % (1 + most_rows_beside);
+        rows.within = rows.count == 0 || trial % 4 != 0;
+        for (int k = 0; k < rows.count; ++k) rows.beside[k] = starts[static_cast<std::size_t>(k) + 1].data();
+
+        CoarseArguments arguments;
+        arguments.x = column[0].data();
+        arguments.y = column[1].data();
+        arguments.z = column[2].data();
+        arguments.radius = alike ? nullptr : column[3].data();
+        const double reach = alike ? 2.0 * common + skin : skin;
+        arguments.reach = static_cast<float>(1.0e3 * (reach + margin));
+        std::vector<RowPair> room(count * count);
+        const RowPair* const end = coarse_kernel_for(machine, alike)(arguments, rows, room.data());
+        std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
+        for (const RowPair* pair = room.data(); pair != end; ++pair) found.insert({pair->first(), pair->second()});
+
+        std::size_t right = 0;
+        for (std::uint32_t cell = 0; cell < cells; ++cell)
+          for (std::uint32_t i = rows.own[cell]; i < rows.own[cell + 1]; ++i) {
+            const std::uint32_t before = cell > 0 ? cell - 1 : 0, after = std::min(cell + 2, cells);
+            const auto test = [&](std::uint32_t j) {
+              const double gap =
+                  std::hypot(metres[0][i] - metres[0][j], metres[1][i] - metres[1][j], metres[2][i] - metres[2][j]) -
+                  (alike ? 0.0 : metres[3][i] + metres[3][j]);
+              const auto times = found.count({i, j});
+              if (gap < reach) CHECK(times == 1);
+              CHECK(times <= (gap < reach + 2.0 * margin ? 1U : 0U));
+              right += times;
+              ++tested;
+            };
+            if (rows.within)
+              for (std::uint32_t j = i + 1; j < rows.own[after]; ++j) test(j);
+            for (int k = 0; k < rows.count; ++k)
+              for (std::uint32_t j = rows.beside[k][before]; j < rows.beside[k][after]; ++j) test(j);
+          }
+        CHECK(right == found.size()); // and none from beyond those cells
+      }
+  CHECK(tested > 50000);
 }
