@@ -56,20 +56,24 @@ template <class S> struct ContactForces {
   Vector closing;    ///< d'
 };
 
+template <class S> struct Arm {
+  typename S::Vector x, y, z;
+  [[gnu::always_inline]] explicit Arm(const ContactGeometry<S>& c)
+      : x(c.lever * c.nx), y(c.lever * c.ny), z(c.lever * c.nz) {}
+};
 /// v - (v.n) n + a (s x n): the velocity of the contact point across the normal, in place of v.
 template <class S, bool rotates>
 GRANDAMP_INLINE void slip_of(const ContactGeometry<S>& c, typename S::Vector closing, const typename S::Vector& sx,
                              const typename S::Vector& sy, const typename S::Vector& sz, typename S::Vector& ux,
                              typename S::Vector& uy, typename S::Vector& uz) {
-  using Vector = typename S::Vector;
   ux = S::fnma(closing, c.nx, ux);
   uy = S::fnma(closing, c.ny, uy);
   uz = S::fnma(closing, c.nz, uz);
   if constexpr (rotates) {
-    const Vector wx = c.lever * sx, wy = c.lever * sy, wz = c.lever * sz;
-    ux = S::fnma(wz, c.ny, S::fma(wy, c.nz, ux));
-    uy = S::fnma(wx, c.nz, S::fma(wz, c.nx, uy));
-    uz = S::fnma(wy, c.nx, S::fma(wx, c.ny, uz));
+    const Arm<S> arm(c);
+    ux = S::fnma(sz, arm.y, S::fma(sy, arm.z, ux));
+    uy = S::fnma(sx, arm.z, S::fma(sz, arm.x, uy));
+    uz = S::fnma(sy, arm.x, S::fma(sx, arm.y, uz));
   }
 }
 
@@ -158,9 +162,10 @@ GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVector
       out.rz = zero - rz;
     }
     if constexpr (E.rotates()) {
-      out.tx = c.lever * S::fnma(c.ny, rz, c.nz * ry);
-      out.ty = c.lever * S::fnma(c.nz, rx, c.nx * rz);
-      out.tz = c.lever * S::fnma(c.nx, ry, c.ny * rx);
+      const Arm<S> arm(c);
+      out.tx = S::fnma(arm.y, rz, arm.z * ry);
+      out.ty = S::fnma(arm.z, rx, arm.x * rz);
+      out.tz = S::fnma(arm.x, ry, arm.y * rx);
     }
   }
 }

@@ -12,7 +12,7 @@ template <class S, Damping D>
 GRANDAMP_INLINE typename S::Vector damping_coefficient(typename S::Vector constant, typename S::Vector mass,
                                                        typename S::Vector C, typename S::Vector root) {
   if constexpr (D == Damping::tsuji || D == Damping::tsuji_without_tension)
-    return constant * S::sqrt(mass * C * root);
+    return constant * S::sqrt(mass * (C * root)); // C root is in the spring's force as well
   else
     return constant;
 }
