@@ -31,6 +31,7 @@ inline constexpr int most_rows_beside = 4;
 /// entries.
 struct CellRows {
   std::uint32_t cells = 0;
+  std::uint32_t first = 0, last = 0; ///< cells whose granules look for partners; one past the last
   const std::uint32_t* own = nullptr;
   bool within = true; ///< pairs within the own row are looked for, too
   int count = 0;
@@ -45,9 +46,9 @@ using CoarseArguments = SearchArguments<float>;
 /// (which must have room for every pair tested, and list_padding more) and returns the new end.
 using CandidateKernel = RowPair*(const CandidateArguments&, IndexRange own, std::uint32_t own_end,
                                  const IndexRange* ranges, int count, RowPair* to);
-/// The granules of the own row, each against those after it in its cell and the next, and those of its cell and both
-/// next to it of the rows beside. Appends at `to` (which must have room for every pair tested, and list_padding more)
-/// and returns the new end.
+/// The granules of those cells of the own row, each against those after it in its cell and the next, and those of its
+/// cell and both next to it of the rows beside. Appends at `to` (which must have room for every pair tested, and
+/// list_padding more) and returns the new end.
 using CoarseKernel = RowPair*(const CoarseArguments&, const CellRows&, RowPair* to);
 
 struct SplitArguments {

@@ -137,16 +137,28 @@ void look_along(const Wall& wall, const CellGrid& grid, int first_layer, int las
   }
 }
 
-/// Pairs that a coarse search of a row may find.
-std::size_t room_for(const kernels::CellRows& rows) {
-  std::size_t room = kernels::list_padding;
-  for (std::uint32_t cell = 0; cell < rows.cells; ++cell) {
-    const std::uint32_t before = cell > 0 ? cell - 1 : 0, after = std::min(cell + 2, rows.cells);
-    std::size_t tests = rows.within ? rows.own[after] - rows.own[cell] : 0;
-    for (int k = 0; k < rows.count; ++k) tests += rows.beside[k][after] - rows.beside[k][before];
-    room += tests * (rows.own[cell + 1] - rows.own[cell]);
+/// Pairs that a coarse search may find from one of the cells.
+std::size_t pairs_from(const kernels::CellRows& rows, std::uint32_t cell) {
+  const std::uint32_t before = cell > 0 ? cell - 1 : 0, after = std::min(cell + 2, rows.cells);
+  std::size_t tests = rows.within ? rows.own[after] - rows.own[cell] : 0;
+  for (int k = 0; k < rows.count; ++k) tests += rows.beside[k][after] - rows.beside[k][before];
+  return tests * (rows.own[cell + 1] - rows.own[cell]);
+}
+
+/// A coarse search of the whole row, as many cells at a time as need no more room than so many pairs, or one.
+void append(PairList& list, kernels::CellRows rows, const kernels::CoarseArguments& arguments,
+            kernels::CoarseKernel* search) {
+  constexpr std::size_t most_room = 1U << 16;
+  while (rows.last < rows.cells) {
+    rows.first = rows.last;
+    std::size_t room = kernels::list_padding + pairs_from(rows, rows.last++);
+    for (; rows.last < rows.cells; ++rows.last) {
+      const std::size_t more = pairs_from(rows, rows.last);
+      if (room + more > most_room) break;
+      room += more;
+    }
+    list.set_end(search(arguments, rows, list.room_for(room)));
   }
-  return room;
 }
 
 } // namespace
@@ -221,10 +233,6 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
     block.first = last;
     block.beyond = {};
   };
-  const auto append = [&](PairList& list, const kernels::CellRows& rows) {
-    list.set_end(search.coarse(arguments, rows, list.room_for(grandamp::room_for(rows))));
-  };
-
   for (int slow = first_layer; slow < last_layer; ++slow) {
     const bool next_is_outside = slow + 1 == last_layer;
     for (int middle = 0; middle < shape.cells[1]; ++middle) {
@@ -239,7 +247,7 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
       const auto reached = [&] { return rows.count == 0 ? end : rows.beside[rows.count - 1][rows.cells]; };
       if (middle + 1 < shape.cells[1]) look_at(middle + 1, slow);
       if (next_is_outside) {
-        append(segment.inner, rows);
+        append(segment.inner, rows, arguments, search.coarse);
         block.front = std::max(block.front, reached());
         rows.count = 0;
         rows.within = false;
@@ -247,10 +255,10 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
       if (slow + 1 < shape.cells[2])
         for (int m = std::max(middle - 1, 0); m <= std::min(middle + 1, shape.cells[1] - 1); ++m) look_at(m, slow + 1);
       if (!next_is_outside) {
-        append(segment.inner, rows);
+        append(segment.inner, rows, arguments, search.coarse);
         block.front = std::max(block.front, reached());
       } else if (rows.count > 0) {
-        append(segment.boundary, rows);
+        append(segment.boundary, rows, arguments, search.coarse);
         block.beyond = {block.beyond.last > 0 ? block.beyond.first : rows.beside[0][0], reached()};
       }
     }

@@ -61,7 +61,8 @@ TEST_CASE("Verlet list: the grid finds every pair within reach, no other, and th
   using kernels::InstructionSet;
   for (const InstructionSet set : {InstructionSet::generic, InstructionSet::avx2, InstructionSet::avx512})
     for (const bool alike : {true, false})
-      for (const Vector3& size : {Vector3{0.03, 0.02, 0.04}, Vector3{0.003, 0.2, 0.02}, Vector3{50.0, 0.02, 200.0}}) {
+      for (const Vector3& size : {Vector3{0.03, 0.02, 0.04}, Vector3{0.003, 0.2, 0.02}, Vector3{50.0, 0.02, 200.0},
+                                  Vector3{0.005, 0.008, 0.005}}) { // the last: hundreds in a cell
         if (!kernels::available(set)) continue;
         CAPTURE(std::string(kernels::name(set)));
         CAPTURE(alike);
