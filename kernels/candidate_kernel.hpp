@@ -1,5 +1,5 @@
-// Candidate search: granules against contiguous ranges of sorted granules, exactly or in float; and the division of the
-// pairs found into classes of gaps.
+// Candidate search: granules against contiguous ranges of sorted granules, exactly, or against the cells around theirs,
+// in float; and the division of the pairs found into classes of gaps.
 #pragma once
 
 #include "kernels/search_arguments.hpp"
@@ -35,8 +35,9 @@ RowPair* candidate_kernel(const CandidateArguments& a, IndexRange own, std::uint
   return to;
 }
 
-/// In float, eight at a time. The rows around hold a few granules each in three cells: one vector, as a rule, of which
-/// those past the cells are masked, so that no branch depends on how many there are.
+/// In float, eight at a time. Three cells of a row hold a few granules: one vector, as a rule, of which what is past
+/// them is masked. No cells at all take one vector, too, so that no branch depends on how many there are up to eight.
+/// alike: `reach` holds both radii and the skin.
 template <class S, bool alike>
 RowPair* coarse_kernel(const CoarseArguments& arguments, const CellRows& cell_rows, RowPair* to) {
   using F = typename S::Eight;

@@ -56,12 +56,14 @@ template <class S> struct ContactForces {
   Vector closing;    ///< d'
 };
 
+/// The lever times the normal: crossed with it, spins become velocities of the contact point, and forces there torques.
 template <class S> struct Arm {
   typename S::Vector x, y, z;
   [[gnu::always_inline]] explicit Arm(const ContactGeometry<S>& c)
       : x(c.lever * c.nx), y(c.lever * c.ny), z(c.lever * c.nz) {}
 };
-/// v - (v.n) n + a (s x n): the velocity of the contact point across the normal, in place of v.
+
+/// v - (v.n) n + s x a n: the velocity of the contact point across the normal, in place of v.
 template <class S, bool rotates>
 GRANDAMP_INLINE void slip_of(const ContactGeometry<S>& c, typename S::Vector closing, const typename S::Vector& sx,
                              const typename S::Vector& sy, const typename S::Vector& sz, typename S::Vector& ux,

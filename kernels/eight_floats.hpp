@@ -1,12 +1,11 @@
 // Eight lanes of float, whatever the instruction set: the vocabulary of the coarse search. Portably here, by AVX2 in
 // eight_floats_avx2.hpp.
 //
-//   Vector, width, load and store (unaligned), broadcast, and the operators of the compiler's vector extension
+//   Vector, width, load (unaligned), broadcast, and the operators of the compiler's vector extension
 //   fma(a, b, c) = a b + c                     fused where the instruction set has it
 //   less(a, b)                                 one bit per lane
-//   select_partners(first, base, mask, to)     the pairs of row `first` and the marked ones of the eight rows from
-//   `base`;
-//                                              returns their number. Writes eight.
+//   select_partners(first, base, mask, to)     the pairs of row `first` and the marked ones of eight rows from `base`;
+//                                              returns their number. May write eight.
 #pragma once
 
 #include "kernels/simd.hpp"
@@ -22,7 +21,6 @@ struct EightFloats {
     __builtin_memcpy(&v, p, sizeof v);
     return v;
   }
-  GRANDAMP_INLINE void store(float* p, Vector v) { __builtin_memcpy(p, &v, sizeof v); }
   GRANDAMP_INLINE Vector broadcast(float x) { return Vector{x, x, x, x, x, x, x, x}; }
   GRANDAMP_INLINE unsigned less(Vector a, Vector b) {
     const auto marked = a < b;

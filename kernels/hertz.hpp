@@ -11,7 +11,7 @@ GRANDAMP_INLINE typename S::Vector hertz_root(typename S::Vector radius, typenam
   return S::sqrt(radius * overlap);
 }
 
-/// k_n d^(3/2) = C sqrt(R d) d
+/// k_n d^(3/2) = (C sqrt(R d)) d; damping_coefficient() needs the product in brackets as well.
 template <class S>
 GRANDAMP_INLINE typename S::Vector hertz_force(typename S::Vector C, typename S::Vector root,
                                                typename S::Vector overlap) {

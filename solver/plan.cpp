@@ -115,7 +115,7 @@ std::size_t estimate_memory(const Plan& plan) {
       std::min(0.5 * static_cast<double>(plan.granules), 4.0 * plan.damper.fill_fraction * reach * reach * reach);
   const double cells = static_cast<double>(plan.grid[0]) * plan.grid[1] * plan.grid[2];
   return static_cast<std::size_t>(
-      static_cast<double>(plan.granules) * (bytes_per_granule + bytes_per_candidate * candidates) + 4.0 * cells);
+      static_cast<double>(plan.granules) * (bytes_per_granule + bytes_per_candidate * candidates) + 8.0 * cells);
 }
 
 void note(Plan& plan, std::string key, std::string message) {

@@ -145,14 +145,15 @@ std::size_t pairs_from(const kernels::CellRows& rows, std::uint32_t cell) {
   return tests * (rows.own[cell + 1] - rows.own[cell]);
 }
 
-/// A coarse search of the whole row, as many cells at a time as need no more room than so many pairs, or one.
-void append(PairList& list, kernels::CellRows rows, const kernels::CoarseArguments& arguments,
-            kernels::CoarseKernel* search) {
+/// A coarse search from the cells [first, last) of the row, as many at a time as need no more room than so many pairs,
+/// or one, whatever room that needs.
+void append(PairList& list, kernels::CellRows rows, std::uint32_t first, std::uint32_t last,
+            const kernels::CoarseArguments& arguments, kernels::CoarseKernel* search) {
   constexpr std::size_t most_room = 1U << 16;
-  while (rows.last < rows.cells) {
+  for (rows.last = first; rows.last < last;) {
     rows.first = rows.last;
     std::size_t room = kernels::list_padding + pairs_from(rows, rows.last++);
-    for (; rows.last < rows.cells; ++rows.last) {
+    for (; rows.last < last; ++rows.last) {
       const std::size_t more = pairs_from(rows, rows.last);
       if (room + more > most_room) break;
       room += more;
@@ -233,36 +234,35 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
     block.first = last;
     block.beyond = {};
   };
-  for (int slow = first_layer; slow < last_layer; ++slow) {
-    const bool next_is_outside = slow + 1 == last_layer;
+  for (int slow = first_layer; slow < last_layer; ++slow)
     for (int middle = 0; middle < shape.cells[1]; ++middle) {
-      kernels::CellRows rows;
-      rows.cells = static_cast<std::uint32_t>(shape.cells[0]);
-      rows.own = grid_.row_start(middle, slow);
-      const std::uint32_t first = rows.own[0], end = rows.own[rows.cells];
-      if (first == end) continue;
-      if (first - block.first >= kernels::block_granules) finish_block(first);
       // 13 of the 26 neighbours of a cell: the next one of the row, the next row, and three rows of the next layer.
-      const auto look_at = [&](int m, int s) { rows.beside[rows.count++] = grid_.row_start(m, s); };
-      const auto reached = [&] { return rows.count == 0 ? end : rows.beside[rows.count - 1][rows.cells]; };
-      if (middle + 1 < shape.cells[1]) look_at(middle + 1, slow);
-      if (next_is_outside) {
-        append(segment.inner, rows, arguments, search.coarse);
-        block.front = std::max(block.front, reached());
-        rows.count = 0;
-        rows.within = false;
-      }
+      kernels::CellRows inner;
+      inner.cells = static_cast<std::uint32_t>(shape.cells[0]);
+      inner.own = grid_.row_start(middle, slow);
+      kernels::CellRows across = inner; // into the next segment
+      across.within = false;
+      const auto look_at = [&](kernels::CellRows& rows, int m, int s) {
+        rows.beside[rows.count++] = grid_.row_start(m, s);
+      };
+      if (middle + 1 < shape.cells[1]) look_at(inner, middle + 1, slow);
       if (slow + 1 < shape.cells[2])
-        for (int m = std::max(middle - 1, 0); m <= std::min(middle + 1, shape.cells[1] - 1); ++m) look_at(m, slow + 1);
-      if (!next_is_outside) {
-        append(segment.inner, rows, arguments, search.coarse);
-        block.front = std::max(block.front, reached());
-      } else if (rows.count > 0) {
-        append(segment.boundary, rows, arguments, search.coarse);
-        block.beyond = {block.beyond.last > 0 ? block.beyond.first : rows.beside[0][0], reached()};
+        for (int m = std::max(middle - 1, 0); m <= std::min(middle + 1, shape.cells[1] - 1); ++m)
+          look_at(slow + 1 < last_layer ? inner : across, m, slow + 1);
+
+      const std::uint32_t end = inner.own[inner.cells];
+      const auto reached = [&](const kernels::CellRows& rows) { return rows.beside[rows.count - 1][rows.cells]; };
+      for (std::uint32_t first = 0, last = 0; inner.own[last] < end; first = last) {
+        if (inner.own[first] - block.first >= kernels::block_granules) finish_block(inner.own[first]);
+        do ++last;
+        while (last < inner.cells && inner.own[last] - block.first < kernels::block_granules);
+        append(segment.inner, inner, first, last, arguments, search.coarse);
+        block.front = std::max(block.front, inner.count > 0 ? reached(inner) : end);
+        if (across.count == 0) continue;
+        append(segment.boundary, across, first, last, arguments, search.coarse);
+        block.beyond = {block.beyond.last > 0 ? block.beyond.first : across.beside[0][0], reached(across)};
       }
     }
-  }
   finish_block(segment.last);
 }
 

@@ -53,7 +53,7 @@ struct Block {
   std::uint32_t first = 0, last = 0; ///< rows
   PairRange inner, boundary;         ///< in the segment's lists
   /// What its pairs reach besides, to be asked of memory ahead: no part of a list's state, and none in one restored.
-  std::uint32_t front = 0;    ///< one past the last row in the segment
+  std::uint32_t front = 0;    ///< one past the last row in the segment, or some rows more
   kernels::IndexRange beyond; ///< rows of the next segment
 };
 

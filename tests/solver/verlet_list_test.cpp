@@ -20,7 +20,7 @@ double radius_of(std::uint32_t id, bool alike) {
 
 /// Places in the box's far corner, where float is worst, in a cluster whose neighbours are often just within reach of
 /// each other, or just beyond.
-Granules make_granules(std::uint32_t count, const Vector3& size, bool alike) {
+Granules make_granules(std::uint32_t count, const Vector3& size, bool alike, double cluster) {
   Granules granules(count, {});
   std::mt19937_64 engine(11);
   const auto random = [&](double low, double high) {
@@ -30,7 +30,7 @@ Granules make_granules(std::uint32_t count, const Vector3& size, bool alike) {
     const double r = radius_of(i, alike);
     Vector3 at;
     if (i % 2 == 0) {
-      for (std::size_t k = 0; k < 3; ++k) at[k] = size[k] - random(0.0, std::min(size[k], 20.0e-3));
+      for (std::size_t k = 0; k < 3; ++k) at[k] = size[k] - random(0.0, std::min(size[k], cluster));
     } else {
       const kernels::PositionRow& other = granules.position[i - 1];
       const double beyond[] = {-1e-9, 1e-9, -1e-12, 1e-12};
@@ -62,13 +62,15 @@ TEST_CASE("Verlet list: the grid finds every pair within reach, no other, and th
   for (const InstructionSet set : {InstructionSet::generic, InstructionSet::avx2, InstructionSet::avx512})
     for (const bool alike : {true, false})
       for (const Vector3& size : {Vector3{0.03, 0.02, 0.04}, Vector3{0.003, 0.2, 0.02}, Vector3{50.0, 0.02, 200.0},
-                                  Vector3{0.005, 0.008, 0.005}}) { // the last: hundreds in a cell
-        if (!kernels::available(set)) continue;
+                                  Vector3{0.005, 0.008, 0.005}, Vector3{0.02, 0.02, 0.06}}) {
+        // The last but one: hundreds in a cell; the last, once: two segments.
+        const bool cut = size[2] == 0.06;
+        if (!kernels::available(set) || (cut && (alike || set != InstructionSet::avx2))) continue;
         CAPTURE(std::string(kernels::name(set)));
         CAPTURE(alike);
         CAPTURE(size[0]);
-        const std::uint32_t count = 1500;
-        Granules granules = make_granules(count, size, alike);
+        const std::uint32_t count = cut ? 20000 : 1500;
+        Granules granules = make_granules(count, size, alike, cut ? 0.06 : 0.02);
         VerletList::Search search = VerletList::Search::with(set, alike, radius);
         search.skin = skin;
         search.cell_length = 2.0 * radius + skin;
@@ -77,6 +79,13 @@ TEST_CASE("Verlet list: the grid finds every pair within reach, no other, and th
 
         std::map<Pair, std::size_t> found; // and its class
         std::size_t listed = 0;
+        std::size_t across = 0;
+        for (const Segment& segment : list.segments()) {
+          across += segment.boundary.count();
+          for (const Block& block : segment.blocks) // full at the first cell that makes it so
+            if (cut) CHECK(block.last - block.first < kernels::block_granules + 100);
+        }
+        CHECK((across > 0) == cut);
         for (const Segment& segment : list.segments())
           for (const Block& block : segment.blocks)
             for (const auto& [pairs, range] :
@@ -93,11 +102,12 @@ TEST_CASE("Verlet list: the grid finds every pair within reach, no other, and th
         CHECK(listed == found.size());
         CHECK(listed == list.candidates());
 
-        std::size_t wanted = 0, wrong = 0, wrong_class = 0;
+        std::size_t wanted = 0, wrong = 0, wrong_class = 0, looked_up = 0;
         const bool fused = set != InstructionSet::generic;
         for (std::uint32_t i = 0; i < count; ++i)
           for (std::uint32_t j = i + 1; j < count; ++j) {
             const kernels::PositionRow &a = granules.position[i], &b = granules.position[j];
+            if (std::max(std::abs(a.x - b.x), std::abs(a.z - b.z)) > 2.0 * radius + skin) continue;
             const auto reach = [&](double share) {
               return share * skin + (alike ? 2.0 * radius : a.radius + b.radius);
             };
@@ -105,6 +115,7 @@ TEST_CASE("Verlet list: the grid finds every pair within reach, no other, and th
             // Without a fused multiply-add a pair on the very edge may fall either way.
             if (!fused && std::abs(square(a, b) / (reach(1.0) * reach(1.0)) - 1.0) < 1e-14) continue;
             const auto it = found.find(std::minmax(granules.id[i], granules.id[j]));
+            if (it != found.end()) ++looked_up;
             if (within(1.0)) ++wanted;
             if (within(1.0) != (it != found.end()))
               ++wrong;
@@ -115,6 +126,7 @@ TEST_CASE("Verlet list: the grid finds every pair within reach, no other, and th
           }
         CHECK(wanted > 700);
         CHECK(wrong == 0);
+        if (fused) CHECK(looked_up == found.size());
         CHECK(wrong_class <= (fused ? 0U : 2U));
       }
 }
