@@ -7,7 +7,6 @@ namespace grandamp {
 
 namespace {
 
-using kernels::IndexRange;
 using kernels::RowPair;
 
 /// Below this many granules one segment is faster than any division of the work.
