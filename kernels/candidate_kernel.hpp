@@ -45,7 +45,7 @@ RowPair* coarse_kernel(const CoarseArguments& arguments, const CellRows& cell_ro
   const CoarseArguments a = arguments; // where nothing that is stored can be a part of it
   const CellRows rows = cell_rows;
   for (std::uint32_t cell = rows.first; cell < rows.last; ++cell) {
-    const std::uint32_t before = cell > 0 ? cell - 1 : 0, after = cell + 2 < rows.cells ? cell + 2 : rows.cells;
+    const std::uint32_t before = rows.before(cell), after = rows.after(cell);
     IndexRange beside[most_rows_beside];
     for (int k = 0; k < rows.count; ++k) beside[k] = {rows.beside[k][before], rows.beside[k][after]};
     for (std::uint32_t i = rows.own[cell]; i < rows.own[cell + 1]; ++i) {

@@ -36,6 +36,10 @@ struct CellRows {
   bool within = true; ///< pairs within the own row are looked for, too
   int count = 0;
   const std::uint32_t* beside[most_rows_beside] = {};
+
+  /// The cells next to one, and itself: the first, and one past the last.
+  constexpr std::uint32_t before(std::uint32_t cell) const { return cell > 0 ? cell - 1 : 0; }
+  constexpr std::uint32_t after(std::uint32_t cell) const { return cell + 2 < cells ? cell + 2 : cells; }
 };
 
 /// In any unit that makes a cell's length about 1. `reach` has to allow for what float leaves out: the kernel is to

@@ -138,7 +138,7 @@ void look_along(const Wall& wall, const CellGrid& grid, int first_layer, int las
 
 /// Pairs that a coarse search may find from one of the cells.
 std::size_t pairs_from(const kernels::CellRows& rows, std::uint32_t cell) {
-  const std::uint32_t before = cell > 0 ? cell - 1 : 0, after = std::min(cell + 2, rows.cells);
+  const std::uint32_t before = rows.before(cell), after = rows.after(cell);
   std::size_t tests = rows.within ? rows.own[after] - rows.own[cell] : 0;
   for (int k = 0; k < rows.count; ++k) tests += rows.beside[k][after] - rows.beside[k][before];
   return tests * (rows.own[cell + 1] - rows.own[cell]);

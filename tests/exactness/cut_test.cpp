@@ -37,9 +37,10 @@ public:
     if (cuts.slow_checkpoints > 0)
       setenv("GRANDAMP_TEST_CHECKPOINT_DELAY", std::to_string(cuts.slow_checkpoints).c_str(), 1);
     int made = 0, runs = 0, anew = 0, writing = 0;
-    // Where files take their time, some of the cuts must find one half written; chance may want more cuts for that.
-    const int wanted_in_writing = cuts.slow_checkpoints > 0 ? 1 + cuts.wanted / 6 : 0;
-    for (; made < cuts.wanted || writing < wanted_in_writing; ++runs) {
+    // Where files take their time, more than a sixth of the cuts must find one half written; chance may want more cuts
+    // for that.
+    const auto too_few = [&] { return cuts.slow_checkpoints > 0 && writing <= made / 6; };
+    for (; made < cuts.wanted || too_few(); ++runs) {
       REQUIRE(runs < 40);
       const std::filesystem::path run = folder_ / ("run" + std::to_string(runs));
       // A part takes a tenth of a second before its first step, and what a kill takes back again.
