@@ -6,10 +6,26 @@
 #include <cstddef>
 #include <cstdlib>
 #include <new>
+#include <sys/mman.h>
 #include <type_traits>
 #include <utility>
 
 namespace grandamp {
+
+/// Memory on a cache line's boundary, to be given to std::free. From half a large page on it is a number of large pages,
+/// if the system has them to give: of small ones an array has more than a processor remembers the places of. Throws
+/// std::bad_alloc.
+inline void* allocate_rows(std::size_t bytes) {
+  constexpr std::size_t line = 64, large_page = std::size_t{1} << 21;
+  const bool on_large_pages = 2 * bytes >= large_page;
+  const std::size_t unit = on_large_pages ? large_page : line, whole = (bytes + unit - 1) / unit * unit;
+  void* const rows = std::aligned_alloc(unit, whole);
+  if (rows == nullptr) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+  if (on_large_pages) madvise(rows, whole, MADV_HUGEPAGE); // a wish: what it answers changes nothing
+#endif
+  return rows;
+}
 
 template <class T> class RowArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -32,8 +48,7 @@ public:
     data_ = nullptr;
     size_ = 0;
     if (size == 0) return;
-    data_ = static_cast<T*>(std::aligned_alloc(64, (size * sizeof(T) + 63) / 64 * 64));
-    if (data_ == nullptr) throw std::bad_alloc();
+    data_ = static_cast<T*>(allocate_rows(size * sizeof(T)));
     size_ = size;
   }
 
