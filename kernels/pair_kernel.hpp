@@ -63,7 +63,7 @@ template <class S, ContactEffects E> struct PairLoop {
       difference<D, alike>(positions(a.granules.position, pairs + k), twice, x, y, z, radii);
       marks |= D::less(D::fma(z, z, D::fma(y, y, x * x)), radii * radii) << k;
     }
-    __builtin_prefetch(pairs + list_ahead);
+    __builtin_prefetch(pairs + list_ahead, 0, 2);
     return marks;
   }
 

@@ -87,6 +87,18 @@ PairRange put_range(Readers& from, Segment& segment, PairList& list, std::uint32
   return range;
 }
 
+/// From the first to one past the last of the pairs' second rows; none if there are no pairs.
+kernels::IndexRange rows_reached(const PairList& list, const PairRange& range, std::uint32_t ghost) {
+  kernels::IndexRange reached{ghost, 0};
+  for (std::size_t k = range.first; k < range.end.back(); ++k) {
+    const std::uint32_t row = list.data()[k].second();
+    if (row >= ghost) continue; // padding
+    reached.first = std::min(reached.first, row);
+    reached.last = std::max(reached.last, row + 1);
+  }
+  return reached.last > 0 ? reached : kernels::IndexRange{};
+}
+
 void put_walls(Readers& from, Segment& segment, std::size_t walls, std::uint32_t ghost) {
   segment.walls.resize(walls);
   for (WallList& wall : segment.walls) {
@@ -135,6 +147,8 @@ void restore(VerletList& list, const ListState& state, std::uint32_t granules, s
       block.last = block_row = from.block_rows.next(block.first, segment.last);
       block.inner = put_range(from, segment, segment.inner, block.first, block.last, segment.last, granules);
       block.boundary = put_range(from, segment, segment.boundary, block.first, block.last, granules, granules);
+      block.front = std::max(block.last, rows_reached(segment.inner, block.inner, granules).last);
+      block.beyond = rows_reached(segment.boundary, block.boundary, granules);
       segment.blocks.push_back(block);
     }
     if (block_row != segment.last) from.block_rows.fail("leaves rows of a segment out");

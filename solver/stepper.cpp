@@ -148,8 +148,10 @@ StepRecord Stepper::advance(bool energies) {
   if (profile_ != nullptr) profile_->prepare(list_.segments().size());
   results_.assign(list_.segments().size(), {});
   for (SegmentResult& result : results_) {
-    result.pairs.max_overlap = result.walls.max_overlap = guards_.max_overlap;
-    if (!review_.on()) result.pairs.max_closing = result.walls.max_closing = guards_.max_closing;
+    for (ContactResult* contact : result.contacts()) {
+      contact->max_overlap = guards_.max_overlap;
+      if (!review_.on()) contact->max_closing = guards_.max_closing;
+    }
   }
   const double reaction = wall_forces(kernels);
   EnclosureStep enclosure;
@@ -230,27 +232,26 @@ kernels::SpringArguments Stepper::spring_arguments(std::size_t segment, SpringMe
 }
 
 void Stepper::boundary_forces(const Kernels& kernels) {
-  const double approach = approach_share();
+  if (crosses_in_sweep()) return;
   team_.each(list_.segments().size(), [&](std::size_t s) {
-    Segment& segment = list_.segments()[s];
-    kernels::PairArguments a = pair_arguments(segment);
-    timed(profile_, Phase::pairs, s, [&] {
-      for (std::size_t b = 0; b < segment.blocks.size(); ++b) {
-        const Block& block = segment.blocks[b];
-        a.pairs = segment.boundary.data() + block.boundary.first;
-        a.count = block.boundary.to_test(approach);
-        if (a.count == 0) continue;
-        a.ahead = {};
-        if (touch_ahead_ && b + 1 < segment.blocks.size()) {
-          const Block& next = segment.blocks[b + 1];
-          a.ahead = {{next.beyond, {next.first, next.last}}};
-        }
-        if (remembers())
-          a.springs = spring_arguments(s, springs_.of(s).boundary, block.boundary.first, pair_spring_laws_);
-        kernels.pair(a, results_[s].pairs);
-      }
-    });
+    kernels::PairArguments a = pair_arguments(list_.segments()[s]);
+    for (std::size_t b = 0; b < list_.segments()[s].blocks.size(); ++b) boundary_forces_of(s, b, kernels, a);
   });
+}
+
+void Stepper::boundary_forces_of(std::size_t s, std::size_t b, const Kernels& kernels, kernels::PairArguments& a) {
+  Segment& segment = list_.segments()[s];
+  const Block& block = segment.blocks[b];
+  a.pairs = segment.boundary.data() + block.boundary.first;
+  a.count = block.boundary.to_test(approach_share());
+  if (a.count == 0) return;
+  a.ahead = {};
+  if (touch_ahead_ && b + 1 < segment.blocks.size()) {
+    const Block& next = segment.blocks[b + 1];
+    a.ahead = {{next.beyond, {next.first, next.last}}};
+  }
+  if (remembers()) a.springs = spring_arguments(s, springs_.of(s).boundary, block.boundary.first, pair_spring_laws_);
+  timed(profile_, Phase::pairs, s, [&] { kernels.pair(a, results_[s].across); });
 }
 
 void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity) {
@@ -258,14 +259,19 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
   team_.each(list_.segments().size(), [&](std::size_t s) {
     Segment& segment = list_.segments()[s];
     kernels::PairArguments pairs = pair_arguments(segment);
+    kernels::PairArguments across = pairs;
     kernels::MotionArguments motion;
     motion.granules = pairs.granules;
     motion.time_step = part_;
     std::copy_n(kick.begin(), 3, motion.kick);
     std::copy_n(frame_velocity.begin(), 3, motion.frame_velocity);
     std::uint32_t touched = segment.first;
+    std::size_t crossed = crosses_in_sweep() ? 0 : segment.blocks.size();
     for (std::size_t b = 0; b < segment.blocks.size(); ++b) {
       const Block& block = segment.blocks[b];
+      // A row's forces are summed up in one order however many threads there are: walls, across, within.
+      for (; crossed < segment.blocks.size() && segment.blocks[crossed].first < block.front; ++crossed)
+        boundary_forces_of(s, crossed, kernels, across);
       pairs.ahead = {};
       if (touch_ahead_ && b + 1 < segment.blocks.size()) {
         // Partners in the layer ahead come in no order that a processor would guess, and where a layer is larger than
@@ -294,17 +300,17 @@ StepRecord Stepper::collect(double reaction, const EnclosureStep& enclosure) {
   record.early.work_in = enclosure.work_in_first_half;
   record.early.structural_damping = enclosure.damping_loss_first_half;
   double max_speed_squared = 0.0, sum_speed_squared = 0.0;
-  for (const SegmentResult& result : results_) {
-    record.elastic += result.walls.elastic + result.pairs.elastic + result.walls.spring + result.pairs.spring;
-    record.spring_granule += result.pairs.spring;
+  for (SegmentResult& result : results_) {
+    record.spring_granule += result.across.spring + result.pairs.spring;
     record.spring_wall += result.walls.spring;
-    record.contacts += result.walls.contacts + result.pairs.contacts;
     for (std::size_t k = 0; k < 3; ++k) record.wall_force[k] -= result.walls.force[k];
     record.kinetic += result.motion.kinetic;
     for (std::size_t k = 0; k < 3; ++k) record.mass_moment[k] += result.motion.mass_moment[k];
     add(record.dissipated, result.motion.lost);
     add(record.early, result.motion.early);
-    for (const ContactResult* contact : {&result.pairs, static_cast<const ContactResult*>(&result.walls)}) {
+    for (const ContactResult* contact : result.contacts()) {
+      record.elastic += contact->elastic + contact->spring;
+      record.contacts += contact->contacts;
       guards_.max_overlap = std::max(guards_.max_overlap, contact->max_overlap);
       guards_.max_closing = std::max(guards_.max_closing, contact->max_closing);
       review_.met(contact->max_closing);

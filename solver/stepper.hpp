@@ -21,6 +21,7 @@
 #include "solver/verlet_list.hpp"
 #include "solver/walls.hpp"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -75,9 +76,12 @@ public:
 private:
   /// Sums of one segment, kept apart so that they are added in order.
   struct SegmentResult {
+    kernels::ContactResult across; ///< pairs with the next segment
     kernels::ContactResult pairs;
     kernels::WallResult walls;
     kernels::MotionResult motion;
+
+    std::array<kernels::ContactResult*, 3> contacts() { return {&walls, &across, &pairs}; }
   };
   struct Kernels {
     kernels::PairKernel* pair = nullptr;
@@ -110,7 +114,12 @@ private:
   void audit_if_due();
   double wall_forces(const Kernels& kernels); ///< the reaction along the enclosure's direction, N
   Vector3 wall_force() const;                 ///< on the enclosure, N, of the walls' kernels just run
+  /// Pairs across two segments must be worked off before the rows of either move. One thread alone does so within its
+  /// sweep, just before it comes to them.
+  bool crosses_in_sweep() const noexcept { return team_.threads() == 1; }
   void boundary_forces(const Kernels& kernels);
+  void boundary_forces_of(std::size_t segment, std::size_t block, const Kernels& kernels,
+                          kernels::PairArguments& arguments);
   void sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity);
   StepRecord collect(double reaction, const EnclosureStep& enclosure);
   void age_list(double max_speed, double time);

@@ -240,10 +240,11 @@ void Stepper::take_half_step_back() {
   granules_.motion = std::move(motion);
   granules_.predicted = std::move(predicted);
   granules_.kinds.clear(0, count);
-  for (const auto& result : results_) {
-    guards_.max_overlap = std::max({guards_.max_overlap, result.pairs.max_overlap, result.walls.max_overlap});
-    guards_.max_closing = std::max({guards_.max_closing, result.pairs.max_closing, result.walls.max_closing});
-  }
+  for (SegmentResult& result : results_)
+    for (const kernels::ContactResult* contact : result.contacts()) {
+      guards_.max_overlap = std::max(guards_.max_overlap, contact->max_overlap);
+      guards_.max_closing = std::max(guards_.max_closing, contact->max_closing);
+    }
 }
 
 } // namespace grandamp

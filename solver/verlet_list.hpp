@@ -52,9 +52,9 @@ struct PairRange {
 struct Block {
   std::uint32_t first = 0, last = 0; ///< rows
   PairRange inner, boundary;         ///< in the segment's lists
-  /// What its pairs reach besides, to be asked of memory ahead: no part of a list's state, and none in one restored.
+  /// What its pairs reach besides. No part of a list's state: one restored finds them anew.
   std::uint32_t front = 0;    ///< one past the last row in the segment, or some rows more
-  kernels::IndexRange beyond; ///< rows of the next segment
+  kernels::IndexRange beyond; ///< rows of the next segment, to be asked of memory ahead
 };
 
 struct Segment {
