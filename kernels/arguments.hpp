@@ -77,9 +77,9 @@ inline constexpr std::size_t contact_chunk = 1024;
 /// Room for those of a chunk that touch, padded to a vector.
 inline constexpr std::size_t contact_scratch = contact_chunk + contact_padding;
 
-/// Pairs of the list that are asked of memory, into the second-level cache, before they are tested: candidates are tested
-/// faster than memory answers, and each block of the list is a new beginning, which takes a processor that watches for
-/// streams some time to see.
+/// Pairs of the list that are asked of memory, into the second-level cache, before they are tested: candidates are
+/// tested faster than memory answers, and each block of the list is a new beginning, which takes a processor that
+/// watches for streams some time to see.
 inline constexpr std::size_t list_ahead = 512;
 
 /// Contacts that are worked off together.

@@ -12,9 +12,9 @@
 
 namespace grandamp {
 
-/// Memory on a cache line's boundary, to be given to std::free. From half a large page on it is a number of large pages,
-/// if the system has them to give: of small ones an array has more than a processor remembers the places of. Throws
-/// std::bad_alloc.
+/// Memory on a cache line's boundary, to be given to std::free. From half a large page on it is a number of large
+/// pages, if the system has them to give: of small ones an array has more than a processor remembers the places of.
+/// Throws std::bad_alloc.
 inline void* allocate_rows(std::size_t bytes) {
   constexpr std::size_t line = 64, large_page = std::size_t{1} << 21;
   const bool on_large_pages = 2 * bytes >= large_page;
