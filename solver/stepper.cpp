@@ -71,6 +71,7 @@ void Stepper::take_part(bool energies) {
 
 const StepRecord& Stepper::step_in_parts(std::size_t level, bool energies) {
   const std::int64_t parts = StepReview::parts[level];
+  rebuild_if_due(); // where a sample would, before the granules are taken elsewhere
   part_ = time_step_ / static_cast<double>(parts);
   level_ = level;
   // Velocities are where the first part wants them, at t_(n-1/2), positions half a step less half a part too late.

@@ -135,6 +135,22 @@ TEST_CASE("adaptive: cut anywhere, sampled or not, on any number of threads, the
   }
 }
 
+TEST_CASE("adaptive: a sample just when a list is due does not change what follows") {
+  Scene scene = too_slow_a_guess(300, 0.01);
+  scene.verlet.skin = 0.001; // due almost every step
+  Simulation alone(scene, threads(1)), watched(scene, threads(1));
+  while (!alone.finished()) {
+    alone.step();
+    watched.sample();
+    watched.step();
+  }
+  CHECK(alone.step_review().refined > 100);
+  CHECK(alone.verlet().mean_interval < 3.0);
+  CHECK(alone.verlet().builds == watched.verlet().builds);
+  CHECK(alone.granules().position == watched.granules().position);
+  CHECK(alone.granules().velocity == watched.granules().velocity);
+}
+
 TEST_CASE("adaptive: where nothing is faster than expected, not a bit differs") {
   Scene scene = table_5(60, 0.01);
   scene.time.step.reset();
