@@ -232,9 +232,15 @@ kernels::SpringArguments Stepper::spring_arguments(std::size_t segment, SpringMe
   return a;
 }
 
+bool Stepper::crosses_in_sweep(std::size_t segment) const noexcept {
+  const std::size_t segments = list_.segments().size();
+  return segment + 1 == segments || team_.group_of(segment, segments) == team_.group_of(segment + 1, segments);
+}
+
 void Stepper::boundary_forces(const Kernels& kernels) {
-  if (crosses_in_sweep()) return;
+  if (team_.threads() == 1) return;
   team_.each(list_.segments().size(), [&](std::size_t s) {
+    if (crosses_in_sweep(s)) return;
     kernels::PairArguments a = pair_arguments(list_.segments()[s]);
     for (std::size_t b = 0; b < list_.segments()[s].blocks.size(); ++b) boundary_forces_of(s, b, kernels, a);
   });
@@ -267,7 +273,7 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
     std::copy_n(kick.begin(), 3, motion.kick);
     std::copy_n(frame_velocity.begin(), 3, motion.frame_velocity);
     std::uint32_t touched = segment.first;
-    std::size_t crossed = crosses_in_sweep() ? 0 : segment.blocks.size();
+    std::size_t crossed = crosses_in_sweep(s) ? 0 : segment.blocks.size();
     for (std::size_t b = 0; b < segment.blocks.size(); ++b) {
       const Block& block = segment.blocks[b];
       // A row's forces are summed up in one order however many threads there are: walls, across, within.

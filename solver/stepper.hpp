@@ -114,9 +114,9 @@ private:
   void audit_if_due();
   double wall_forces(const Kernels& kernels); ///< the reaction along the enclosure's direction, N
   Vector3 wall_force() const;                 ///< on the enclosure, N, of the walls' kernels just run
-  /// Pairs across two segments must be worked off before the rows of either move. One thread alone does so within its
-  /// sweep, just before it comes to them.
-  bool crosses_in_sweep() const noexcept { return team_.threads() == 1; }
+  /// Whether the pairs of a segment with the next one can wait until the segment is swept: one thread sweeps both, the
+  /// next one later. Else they are worked off before the sweep, since the rows of neither may have moved.
+  bool crosses_in_sweep(std::size_t segment) const noexcept;
   void boundary_forces(const Kernels& kernels);
   void boundary_forces_of(std::size_t segment, std::size_t block, const Kernels& kernels,
                           kernels::PairArguments& arguments);

@@ -1,7 +1,6 @@
 #include "solver/team.hpp"
 
 #ifdef GRANDAMP_PLAIN_THREADS
-#include <atomic>
 #include <thread>
 #include <vector>
 #endif
@@ -26,21 +25,18 @@ Team::Team(Team&&) noexcept = default;
 Team& Team::operator=(Team&&) noexcept = default;
 
 void Team::in_parallel(std::size_t pieces, const std::function<void(std::size_t)>& work) const {
+  const auto group = [&](std::size_t g) {
+    for (std::size_t piece = 0; piece < pieces; ++piece)
+      if (group_of(piece, pieces) == g) work(piece);
+  };
 #ifdef GRANDAMP_PLAIN_THREADS
   // For the thread sanitizer, which cannot see into a TBB that was not built with it.
-  std::atomic<std::size_t> next{0};
   std::vector<std::thread> team;
-  for (int t = 0; t < threads_; ++t)
-    team.emplace_back([&] {
-      for (std::size_t piece = next++; piece < pieces; piece = next++) work(piece);
-    });
+  for (std::size_t g = 0; g < groups(pieces); ++g) team.emplace_back([&group, g] { group(g); });
   for (std::thread& thread : team) thread.join();
 #else
-  // The static partitioner gives a thread the same pieces every time, and those side by side: its rows stay in its
-  // caches, and in its memory. A bed's lower half has more contacts than its upper one, so pieces are dealt out from
-  // both ends: first, last, second, last but one, ...
-  const auto dealt = [&](std::size_t k) { work(k % 2 == 0 ? k / 2 : pieces - 1 - k / 2); };
-  arena_->arena.execute([&] { tbb::parallel_for(std::size_t{0}, pieces, dealt, tbb::static_partitioner{}); });
+  // The static partitioner gives a thread the same group every time: its rows stay in its caches, and in its memory.
+  arena_->arena.execute([&] { tbb::parallel_for(std::size_t{0}, groups(pieces), group, tbb::static_partitioner{}); });
 #endif
 }
 

@@ -3,6 +3,7 @@
 // do not.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -19,7 +20,8 @@ public:
 
   int threads() const noexcept { return threads_; }
 
-  /// Calls work(0) ... work(pieces - 1), each once, in any order and at the same time.
+  /// Calls work(0) ... work(pieces - 1), each once: pieces of one group one after the other as they rise, groups at the
+  /// same time.
   template <class Work> void each(std::size_t pieces, const Work& work) const {
     if (threads_ == 1 || pieces < 2)
       for (std::size_t piece = 0; piece < pieces; ++piece) work(piece);
@@ -27,7 +29,15 @@ public:
       in_parallel(pieces, [&work](std::size_t piece) { work(piece); });
   }
 
+  /// Which of up to threads() groups a piece belongs to. A bed's lower half has more contacts than its upper one, so
+  /// pieces are dealt out from both ends: first, last, second, last but one, ...
+  std::size_t group_of(std::size_t piece, std::size_t pieces) const noexcept {
+    const std::size_t dealt = 2 * piece < pieces ? 2 * piece : 2 * (pieces - 1 - piece) + 1;
+    return dealt * groups(pieces) / pieces;
+  }
+
 private:
+  std::size_t groups(std::size_t pieces) const noexcept { return std::min(pieces, static_cast<std::size_t>(threads_)); }
   void in_parallel(std::size_t pieces, const std::function<void(std::size_t)>& work) const;
 
   struct Arena;
