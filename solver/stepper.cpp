@@ -209,10 +209,9 @@ double Stepper::approach_share() const {
   return skin_ > 0.0 ? 2.0 * age_.travelled / skin_ : 1.0;
 }
 
-kernels::PairArguments Stepper::pair_arguments(Segment& segment) {
+kernels::PairArguments Stepper::pair_arguments() {
   kernels::PairArguments a;
   a.granules = granules_.arrays();
-  a.touching = segment.touching.data();
   a.law = pair_laws_.front();
   a.laws = pair_laws_.data();
   a.populations = contacts_.populations;
@@ -239,9 +238,11 @@ bool Stepper::crosses_in_sweep(std::size_t segment) const noexcept {
 
 void Stepper::boundary_forces(const Kernels& kernels) {
   if (team_.threads() == 1) return;
+  const kernels::PairArguments shared = pair_arguments();
   team_.each(list_.segments().size(), [&](std::size_t s) {
     if (crosses_in_sweep(s)) return;
-    kernels::PairArguments a = pair_arguments(list_.segments()[s]);
+    kernels::PairArguments a = shared;
+    a.touching = list_.segments()[s].touching.data();
     for (std::size_t b = 0; b < list_.segments()[s].blocks.size(); ++b) boundary_forces_of(s, b, kernels, a);
   });
 }
@@ -263,9 +264,11 @@ void Stepper::boundary_forces_of(std::size_t s, std::size_t b, const Kernels& ke
 
 void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity) {
   const double approach = approach_share();
+  const kernels::PairArguments shared = pair_arguments(); // now, while no row is being written
   team_.each(list_.segments().size(), [&](std::size_t s) {
     Segment& segment = list_.segments()[s];
-    kernels::PairArguments pairs = pair_arguments(segment);
+    kernels::PairArguments pairs = shared;
+    pairs.touching = segment.touching.data();
     kernels::PairArguments across = pairs;
     kernels::MotionArguments motion;
     motion.granules = pairs.granules;

@@ -126,8 +126,8 @@ private:
   void watch(double sum_speed_squared);
   StepRecord advance(bool energies);
   Ledger ledger_at(const StepRecord& record) const;
-  double approach_share() const; ///< how much nearer two granules may have come since the list, over the skin
-  kernels::PairArguments pair_arguments(Segment& segment);
+  double approach_share() const;           ///< how much nearer two granules may have come since the list, over the skin
+  kernels::PairArguments pair_arguments(); ///< of all segments, but for their scratch
   bool remembers() const noexcept { return contact_effects_.remembers(); }
   /// Rows of the springs of a list from its entry `first` on, and their laws.
   kernels::SpringArguments spring_arguments(std::size_t segment, SpringMemory::Rows& rows, std::size_t first,
