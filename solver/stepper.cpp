@@ -241,19 +241,20 @@ void Stepper::boundary_forces(const Kernels& kernels) {
   const kernels::PairArguments shared = pair_arguments();
   team_.each(list_.segments().size(), [&](std::size_t s) {
     if (crosses_in_sweep(s)) return;
-    kernels::PairArguments a = shared;
-    a.touching = list_.segments()[s].touching.data();
-    for (std::size_t b = 0; b < list_.segments()[s].blocks.size(); ++b) boundary_forces_of(s, b, kernels, a);
+    for (std::size_t b = 0; b < list_.segments()[s].blocks.size(); ++b) boundary_forces_of(s, b, kernels, shared);
   });
 }
 
-void Stepper::boundary_forces_of(std::size_t s, std::size_t b, const Kernels& kernels, kernels::PairArguments& a) {
+void Stepper::boundary_forces_of(std::size_t s, std::size_t b, const Kernels& kernels,
+                                 const kernels::PairArguments& shared) {
   Segment& segment = list_.segments()[s];
   const Block& block = segment.blocks[b];
+  const std::size_t count = block.boundary.to_test(approach_share());
+  if (count == 0) return;
+  kernels::PairArguments a = shared;
+  a.touching = segment.touching.data();
   a.pairs = segment.boundary.data() + block.boundary.first;
-  a.count = block.boundary.to_test(approach_share());
-  if (a.count == 0) return;
-  a.ahead = {};
+  a.count = count;
   if (touch_ahead_ && b + 1 < segment.blocks.size()) {
     const Block& next = segment.blocks[b + 1];
     a.ahead = {{next.beyond, {next.first, next.last}}};
@@ -269,7 +270,6 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
     Segment& segment = list_.segments()[s];
     kernels::PairArguments pairs = shared;
     pairs.touching = segment.touching.data();
-    kernels::PairArguments across = pairs;
     kernels::MotionArguments motion;
     motion.granules = pairs.granules;
     motion.time_step = part_;
@@ -281,7 +281,7 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
       const Block& block = segment.blocks[b];
       // A row's forces are summed up in one order however many threads there are: walls, across, within.
       for (; crossed < segment.blocks.size() && segment.blocks[crossed].first < block.front; ++crossed)
-        boundary_forces_of(s, crossed, kernels, across);
+        boundary_forces_of(s, crossed, kernels, shared);
       pairs.ahead = {};
       if (touch_ahead_ && b + 1 < segment.blocks.size()) {
         // Partners in the layer ahead come in no order that a processor would guess, and where a layer is larger than

@@ -119,7 +119,7 @@ private:
   bool crosses_in_sweep(std::size_t segment) const noexcept;
   void boundary_forces(const Kernels& kernels);
   void boundary_forces_of(std::size_t segment, std::size_t block, const Kernels& kernels,
-                          kernels::PairArguments& arguments);
+                          const kernels::PairArguments& shared);
   void sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity);
   StepRecord collect(double reaction, const EnclosureStep& enclosure);
   void age_list(double max_speed, double time);
