@@ -21,8 +21,10 @@ names=(kernels scenes peers sizes threads paper_table4 paper_fig14 effects check
 wanted=("$@")
 [ "${1-}" = all ] && wanted=("${names[@]}")
 for name in "${wanted[@]:-none}"; do
-  [[ " ${names[*]} " == *" $name "* ]] || { sed -n '2,16p' "$0" | cut -c3-; exit 2; }
+  [[ " ${names[*]} " == *" $name "* ]] || { [ $# -eq 0 ] || echo "perf/run.sh: '$name' is no measurement" >&2; sed -n '2,16p' "$0" | cut -c3-; exit 2; }
 done
+
+[[ ${REPEATS-3} =~ ^[1-9][0-9]*$ ]] || { echo "perf/run.sh: REPEATS='$REPEATS': a whole number above 0" >&2; exit 2; }
 
 perf_packages=("${build_packages[@]}" binutils lammps libbenchmark-dev liggghts python3 python3-matplotlib python3-numpy
   valgrind)

@@ -260,7 +260,7 @@ void Stepper::boundary_forces_of(std::size_t s, std::size_t b, const Kernels& ke
     a.ahead = {{next.beyond, {next.first, next.last}}};
   }
   if (remembers()) a.springs = spring_arguments(s, springs_.of(s).boundary, block.boundary.first, pair_spring_laws_);
-  timed(profile_, Phase::pairs, s, [&] { kernels.pair(a, results_[s].across); });
+  timed(profile_, Phase::pairs, s, [&] { kernels.pair(a, results_[s].boundary); });
 }
 
 void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& frame_velocity) {
@@ -311,7 +311,7 @@ StepRecord Stepper::collect(double reaction, const EnclosureStep& enclosure) {
   record.early.structural_damping = enclosure.damping_loss_first_half;
   double max_speed_squared = 0.0, sum_speed_squared = 0.0;
   for (SegmentResult& result : results_) {
-    record.spring_granule += result.across.spring + result.pairs.spring;
+    record.spring_granule += result.boundary.spring + result.pairs.spring;
     record.spring_wall += result.walls.spring;
     for (std::size_t k = 0; k < 3; ++k) record.wall_force[k] -= result.walls.force[k];
     record.kinetic += result.motion.kinetic;

@@ -76,12 +76,12 @@ public:
 private:
   /// Sums of one segment, kept apart so that they are added in order.
   struct SegmentResult {
-    kernels::ContactResult across; ///< pairs with the next segment
+    kernels::ContactResult boundary; ///< pairs with the next segment
     kernels::ContactResult pairs;
     kernels::WallResult walls;
     kernels::MotionResult motion;
 
-    std::array<kernels::ContactResult*, 3> contacts() { return {&walls, &across, &pairs}; }
+    std::array<kernels::ContactResult*, 3> contacts() { return {&walls, &boundary, &pairs}; }
   };
   struct Kernels {
     kernels::PairKernel* pair = nullptr;

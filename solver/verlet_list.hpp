@@ -53,7 +53,9 @@ struct Block {
   std::uint32_t first = 0, last = 0; ///< rows
   PairRange inner, boundary;         ///< in the segment's lists
   /// What its pairs reach besides. No part of a list's state: one restored finds them anew.
-  std::uint32_t front = 0;    ///< one past the last row in the segment, or some rows more
+  /// One past the last row in the segment, or some rows more: pairs of these rows with the next segment come before a
+  /// sweep of this block.
+  std::uint32_t front = 0;
   kernels::IndexRange beyond; ///< rows of the next segment, to be asked of memory ahead
 };
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what the tests need, builds, and runs every test; the last line is the sum: "N passed, N failed".
-#   bash tests/run.sh          fifty to seventy minutes on two cores
+#   bash tests/run.sh          half an hour on two cores, or more where they are shared
 #   bash tests/run.sh --full   the long forms too, and every test under the sanitizers
 # What each check printed is in build/checks/.
 set -uo pipefail
