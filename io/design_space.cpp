@@ -119,7 +119,7 @@ std::optional<double> number_in(const std::string& scene_text, const std::string
     }
     if (node == nullptr) return std::nullopt;
   }
-  return node->is_number() ? node->value<double>() : std::nullopt;
+  return as_double(node);
 }
 
 std::vector<double> halton_point(std::size_t index, std::size_t dimensions) {

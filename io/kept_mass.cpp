@@ -64,10 +64,10 @@ KeptMass::KeptMass(const SceneDocument& document, const std::vector<std::string>
                       "left that could follow; allowed: two of them",
                       kept.mass >= 0 ? "mass" : "density", i));
     const toml::table* table = tables != nullptr ? (*tables)[i].as_table() : nullptr;
-    const auto asked = table != nullptr ? (*table)["total_mass"].value<double>() : std::nullopt;
+    const auto asked = table != nullptr ? as_double(table->get("total_mass")) : std::nullopt;
     kept.total = asked ? *asked : static_cast<double>(population.count) * population.mass;
     kept.radius = population.radius;
-    const auto density = table != nullptr ? (*table)["density"].value<double>() : std::nullopt;
+    const auto density = table != nullptr ? as_double(table->get("density")) : std::nullopt;
     kept.by_mass = !density;
     kept.density = density ? *density : population.mass / volume(population.radius);
     kept_.push_back(kept);

@@ -169,9 +169,15 @@ void TableReader::wrong_type(std::string_view key, const std::string& allowed) {
   wrong(key, fmt::format("wrong type: {}", kind), allowed);
 }
 
+std::optional<double> as_double(const toml::node* node) {
+  if (node == nullptr) return std::nullopt;
+  if (const toml::value<std::int64_t>* integer = node->as_integer()) return static_cast<double>(integer->get());
+  return node->value_exact<double>();
+}
+
 std::optional<double> TableReader::finite(const toml::node& node, std::string_view key, const Range& range,
                                           const std::string& allowed) {
-  const std::optional<double> value = node.value<double>(); // takes integers too
+  const std::optional<double> value = as_double(&node);
   if (!value) return std::nullopt;
   if (!std::isfinite(*value)) {
     wrong(key, "not a finite number", allowed);
@@ -210,9 +216,9 @@ std::optional<std::array<double, 2>> TableReader::pair(std::string_view key) {
   const toml::node* node = ask(key);
   if (node == nullptr) return std::nullopt;
   const toml::array* array = node->as_array();
-  if (array != nullptr && array->size() == 2 && (*array)[0].is_number() && (*array)[1].is_number()) {
-    const std::optional<double> first = (*array)[0].value<double>(), second = (*array)[1].value<double>();
-    if (std::isfinite(*first) && std::isfinite(*second)) return std::array{*first, *second};
+  if (array != nullptr && array->size() == 2) {
+    const std::optional<double> first = as_double(array->get(0)), second = as_double(array->get(1));
+    if (first && second && std::isfinite(*first) && std::isfinite(*second)) return std::array{*first, *second};
   }
   wrong(key, "not two finite numbers", "a list of two numbers");
   return std::nullopt;
@@ -258,7 +264,7 @@ std::optional<Vector3> TableReader::vector_of(const toml::node& node, std::strin
   }
   Vector3 result{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const double value = *(*array)[i].value<double>();
+    const double value = *as_double(array->get(i));
     if (!std::isfinite(value) || !each.holds(value)) {
       wrong(key,
             fmt::format("{}{} {}", item, shown((*array)[i]),

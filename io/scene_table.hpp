@@ -23,6 +23,10 @@
 
 namespace grandamp {
 
+/// A number, an integer as the nearest of the doubles: toml++ itself gives none for one that is no double (above 2^53).
+/// Null or no number: nothing.
+std::optional<double> as_double(const toml::node* node);
+
 /// What a key may hold, and how to say so.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();

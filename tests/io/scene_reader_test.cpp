@@ -90,6 +90,23 @@ TEST_CASE("every key of a whole scene arrives") {
   CHECK(document.text == good_scene);
 }
 
+TEST_CASE("an integer that is no double becomes the nearest one, wherever a number is asked for") {
+  const Scene scene = read_scene_text(R"(
+enclosure = {shape = "box", size = [1, 2, 9007199254740993]}
+gravity = [0, 0, -9007199254740993]
+time.duration = 9007199254740993
+output = {window = [1, 9007199254740993], history_interval = 9007199254740993}
+)",
+                                      "integers.toml")
+                          .scene;
+  const double nearest = 9007199254740992.0;
+  CHECK(scene.enclosure.size == Vector3{1.0, 2.0, nearest});
+  CHECK(scene.gravity == Vector3{0.0, 0.0, -nearest});
+  CHECK(scene.time.duration == nearest);
+  CHECK(scene.output.window == std::array{1.0, nearest});
+  CHECK(scene.output.history_interval == nearest);
+}
+
 TEST_CASE("what a scene leaves out has the contract's defaults") {
   const Scene scene = read_scene_text(least_scene, "least.toml").scene;
   CHECK(scene.title.empty());
