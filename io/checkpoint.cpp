@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t format_version = 6;
+constexpr std::int64_t format_version = 7;
 
 template <class SampleType, class Field> void visit_sample(SampleType& s, const std::string& group, Field&& field) {
   const auto one = [&](const char* name, const char* units, const char* description, auto& value) {
@@ -75,7 +75,7 @@ template <class Value> void write_value(hdf5::File& file, const std::string& pat
     file.write(path, std::vector<double>{v});
   } else if constexpr (std::is_arithmetic_v<Value>) {
     file.write(path, std::vector<std::int64_t>{static_cast<std::int64_t>(v)});
-  } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
+  } else if constexpr (std::is_same_v<Value, std::vector<double>> || std::is_same_v<Value, std::vector<float>>) {
     file.write(path, v, width);
   } else { // rows and ids are far below 2^31
     file.write(path, std::vector<std::int32_t>(v.begin(), v.end()));
@@ -109,6 +109,8 @@ template <class Value> void read_value(const hdf5::File& file, const std::string
     value = single(file.read_integers(path)) != 0;
   } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
     value = file.read_doubles(path);
+  } else if constexpr (std::is_same_v<Value, std::vector<float>>) {
+    value = file.read_floats(path);
   } else {
     value = read_whole_numbers<typename Value::value_type>(file, path);
   }

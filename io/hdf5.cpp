@@ -10,6 +10,12 @@ namespace {
 
 constexpr std::size_t most_chunk_rows = 8192;
 
+std::vector<hsize_t> shape_of(std::size_t values, std::size_t width) {
+  std::vector<hsize_t> shape{values / width};
+  if (width > 1) shape.push_back(width);
+  return shape;
+}
+
 /// What HDF5's error stack says at its most specific level; the system's own words if they are in it.
 std::string last_reason() {
   std::string reason;
@@ -174,9 +180,11 @@ void File::write_values(const std::string& name, hid_t type, const void* data, c
 }
 
 void File::write(const std::string& name, const std::vector<double>& values, std::size_t width) {
-  std::vector<hsize_t> shape{values.size() / width};
-  if (width > 1) shape.push_back(width);
-  write_values(name, H5T_NATIVE_DOUBLE, values.data(), shape);
+  write_values(name, H5T_NATIVE_DOUBLE, values.data(), shape_of(values.size(), width));
+}
+
+void File::write(const std::string& name, const std::vector<float>& values, std::size_t width) {
+  write_values(name, H5T_NATIVE_FLOAT, values.data(), shape_of(values.size(), width));
 }
 
 void File::write(const std::string& name, const std::vector<std::int64_t>& values) {
@@ -218,22 +226,25 @@ void File::demand_one(const Handle& type, const Handle& space, H5T_class_t wante
     throw FileError(path_.string() + ": " + name + " is not one " + (wanted == H5T_STRING ? "text" : "number"));
 }
 
-std::vector<double> File::read_doubles(const std::string& name) const {
+template <class Number> std::vector<Number> File::read_numbers(const std::string& name, hid_t type) const {
   const Silence silence;
   const Handle dataset = owned(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "read " + name);
-  std::vector<double> values(count_of(dataset, name));
+  std::vector<Number> values(count_of(dataset, name));
   if (values.empty()) return values;
-  require(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read " + name);
+  require(H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read " + name);
   return values;
 }
 
+std::vector<double> File::read_doubles(const std::string& name) const {
+  return read_numbers<double>(name, H5T_NATIVE_DOUBLE);
+}
+
+std::vector<float> File::read_floats(const std::string& name) const {
+  return read_numbers<float>(name, H5T_NATIVE_FLOAT);
+}
+
 std::vector<std::int64_t> File::read_integers(const std::string& name) const {
-  const Silence silence;
-  const Handle dataset = owned(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, "read " + name);
-  std::vector<std::int64_t> values(count_of(dataset, name));
-  if (values.empty()) return values;
-  require(H5Dread(dataset.id(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read " + name);
-  return values;
+  return read_numbers<std::int64_t>(name, H5T_NATIVE_INT64);
 }
 
 std::string File::read_text(const std::string& name) const {

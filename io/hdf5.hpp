@@ -93,12 +93,14 @@ public:
 
   /// Datasets of fixed size; `width` values per row make it two-dimensional.
   void write(const std::string& name, const std::vector<double>& values, std::size_t width = 1);
+  void write(const std::string& name, const std::vector<float>& values, std::size_t width = 1);
   void write(const std::string& name, const std::vector<std::int64_t>& values);
   void write(const std::string& name, const std::vector<std::int32_t>& values);
   void write(const std::string& name, const std::string& text);
 
   /// Any numeric dataset, row by row.
   std::vector<double> read_doubles(const std::string& name) const;
+  std::vector<float> read_floats(const std::string& name) const;
   std::vector<std::int64_t> read_integers(const std::string& name) const;
   /// A second name for the same object.
   void link(const std::string& object, const std::string& name);
@@ -117,6 +119,7 @@ private:
   void require(herr_t status, const std::string& what) const;
   void write_values(const std::string& name, hid_t type, const void* data, const std::vector<hsize_t>& shape);
   std::size_t count_of(const Handle& dataset, const std::string& name) const;
+  template <class Number> std::vector<Number> read_numbers(const std::string& name, hid_t type) const;
   /// Reading into one value needs one: files that were damaged and sealed again hold anything.
   void demand_one(const Handle& type, const Handle& space, H5T_class_t wanted, const std::string& name) const;
   void put_attribute(const std::string& object, const std::string& name, hid_t type, const void* value);

@@ -10,14 +10,12 @@
 
 namespace grandamp::kernels {
 
-/// Forces by kind, for the ledger. Few granules touch a wall: rows of walls that are not marked are zero, and are
-/// neither read nor cleared.
-struct KindRows {
-  DampingRow* damping_granule = nullptr;
-  DampingRow* damping_wall = nullptr;
-  ForceRow* friction_granule = nullptr;
-  ForceRow* friction_wall = nullptr;
-  std::uint8_t* touches_wall = nullptr;
+/// Walls' forces that take energy, for the ledger. Few granules touch a wall: rows that are not marked are zero, and
+/// are neither read nor cleared.
+struct WallLossRows {
+  DampingRow* damping = nullptr;
+  ForceRow* friction = nullptr;
+  std::uint8_t* touches = nullptr;
 };
 
 /// The arrays of a region's granules. `ghost` and ghost + 1 are two rows past the last granule, far from everything
@@ -28,10 +26,11 @@ struct GranuleArrays {
   MotionRow* predicted = nullptr; ///< the velocities that forces see; the same array as motion under leapfrog
   ForceRow* force = nullptr;
   std::uint8_t* population = nullptr;
-  KindRows kinds;                          ///< ledger only: of this step
-  KindRows kinds_before;                   ///< and of the one before
-  AccelerationRow* acceleration = nullptr; ///< ledger only
-  std::uint32_t ghost = 0;                 ///< number of granules
+  LossRow* loss = nullptr;          ///< ledger only
+  LastStepRow* last_step = nullptr; ///< ledger only
+  WallLossRows wall_loss;           ///< ledger only: of this step
+  WallLossRows wall_loss_before;    ///< and of the one before
+  std::uint32_t ghost = 0;          ///< number of granules
 };
 
 /// The memory of contacts (springs only): rows parallel to a list, entry by entry.

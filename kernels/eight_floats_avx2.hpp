@@ -29,6 +29,10 @@ struct EightFloatsAvx2 {
   static constexpr std::uint32_t width = 8;
 
   GRANDAMP_INLINE Vector load(const float* p) { return _mm256_loadu_ps(p); }
+  GRANDAMP_INLINE void store(float* p, Vector v) { _mm256_storeu_ps(p, v); }
+  GRANDAMP_INLINE Vector of_rows(__m256d low, __m256d high) {
+    return _mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low));
+  }
   GRANDAMP_INLINE Vector broadcast(float x) { return _mm256_set1_ps(x); }
   GRANDAMP_INLINE unsigned less(Vector a, Vector b) {
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)));

@@ -37,10 +37,11 @@ template <class S, MotionEffects E> struct MotionLoop {
     // The fourth component of the forces counts contacts, and must not get into the inverse mass.
     Row after = S::row_fma(S::row_load(force.force), S::row_broadcast(inverse_mass) * drift, before);
     if constexpr (E.accelerated) after = after + kick;
-    Row spin_before = zero, spin_after = zero;
+    Row spin_before = zero, spin_after = zero, turned = zero;
     if constexpr (E.rotates()) {
       spin_before = S::row_load(motion.surface_spin);
-      spin_after = S::row_fma(S::row_load(force.turn), S::row_broadcast(inverse_mass) * turn, spin_before);
+      turned = S::row_load(force.turn);
+      spin_after = S::row_fma(turned, S::row_broadcast(inverse_mass) * turn, spin_before);
     }
     double touching = 0.0;
     if constexpr (E.counts()) touching = force.touching;
@@ -56,7 +57,7 @@ template <class S, MotionEffects E> struct MotionLoop {
       const Row mean = half * (before + after);
       const Row mean_spin = half * (spin_before + spin_after);
       if constexpr (E.energies()) observe(inverse_mass, mean, mean_spin, here);
-      if constexpr (E.ledger()) dissipate(i, mean, after - before, mean_spin, spin_after - spin_before);
+      if constexpr (E.ledger()) dissipate(i, mean, after - before, mean_spin, spin_after - spin_before, turned);
     }
     S::row_store(position, S::row_fma(drift, after, here));
 
@@ -85,20 +86,59 @@ template <class S, MotionEffects E> struct MotionLoop {
   /// m x'' + m x'''' dt^2 / 12 = force, has no term of that order but at its ends: with the mean, the ledger of any
   /// contact at eight steps is 2.8 % of its damping short (perf/ACCURACY.md). x''' dt^2 is half the change of velocity
   /// in the next step less that in the step before, so the next step finishes what this one begins.
-  void dissipate(std::uint32_t i, Row mean, Row gained, Row mean_spin, Row spun) {
-    AccelerationRow& acceleration = a.granules.acceleration[i];
-    const KindRows &now = a.granules.kinds, &then = a.granules.kinds_before;
-    const Motion moved = at_once(mean, gained, acceleration.velocity);
-    Motion turned;
-    if constexpr (E.rotates()) turned = at_once(mean_spin, spun, acceleration.surface_spin);
-    take(lost.normal_granule, early.normal_granule, now.damping_granule[i], then.damping_granule[i], moved);
-    take(lost.friction_granule, early.friction_granule, now.friction_granule[i], then.friction_granule[i], moved,
-         turned);
-    if ((now.touches_wall[i] | then.touches_wall[i]) != 0) {
-      take(lost.normal_wall, early.normal_wall, now.damping_wall[i], then.damping_wall[i], moved);
-      take(lost.friction_wall, early.friction_wall, now.friction_wall[i], then.friction_wall[i], moved, turned);
-      then.touches_wall[i] = 0;
+  void dissipate(std::uint32_t i, Row mean, Row gained, Row mean_spin, Row spun, Row turned) {
+    LossRow& loss = a.granules.loss[i];
+    const LastStep last = last_step(i);
+    const Motion moved = at_once(mean, gained, last.velocity_rate);
+    Motion spinning_so;
+    if constexpr (E.rotates()) spinning_so = at_once(mean_spin, spun, last.surface_spin_rate);
+    const WallLossRows &walls = a.granules.wall_loss, &walls_before = a.granules.wall_loss_before;
+    if ((walls.touches[i] | walls_before.touches[i]) != 0) {
+      take_cleared(lost.normal_wall, early.normal_wall, walls.damping[i].force, walls_before.damping[i].force, moved);
+      ForceRow &now = walls.friction[i], &then = walls_before.friction[i];
+      take_cleared(lost.friction_wall, early.friction_wall, now.force, then.force, moved);
+      if constexpr (E.rotates()) {
+        take_cleared(lost.friction_wall, early.friction_wall, now.turn, then.turn, spinning_so);
+        turned = turned - S::row_load(now.turn);
+      }
+      walls_before.touches[i] = 0;
     }
+    LastStep now;
+    now.damping = S::row_of_floats(loss.damping);
+    now.friction = S::row_of_floats(loss.friction);
+    S::Eight::store(loss.damping, S::Eight::broadcast(0.0F)); // and friction
+    take(lost.normal_granule, early.normal_granule, now.damping, last.damping, moved);
+    take(lost.friction_granule, early.friction_granule, now.friction, last.friction, moved);
+    now.velocity_rate = gained * per_second;
+    if constexpr (E.rotates()) {
+      now.turn = turned;
+      take(lost.friction_granule, early.friction_granule, now.turn, last.turn, spinning_so);
+      now.surface_spin_rate = spun * per_second;
+    }
+    remember(i, now);
+  }
+
+  struct LastStep {
+    Row damping, friction, turn, velocity_rate, surface_spin_rate;
+  };
+  LastStep last_step(std::uint32_t i) const {
+    const float* values = a.granules.last_step[i].values;
+    LastStep last;
+    last.damping = S::row_of_floats(values + LastStepRow::damping);
+    last.friction = S::row_of_floats(values + LastStepRow::friction);
+    if constexpr (E.rotates()) last.turn = S::row_of_floats(values + LastStepRow::turn);
+    last.velocity_rate = S::row_of_floats(values + LastStepRow::velocity_rate);
+    if constexpr (E.rotates()) last.surface_spin_rate = S::row_of_floats(values + LastStepRow::surface_spin_rate);
+    return last;
+  }
+  /// Fourth components are written over by what stands next.
+  void remember(std::uint32_t i, const LastStep& now) {
+    float* values = a.granules.last_step[i].values;
+    S::row_to_floats(values + LastStepRow::damping, now.damping);
+    S::row_to_floats(values + LastStepRow::friction, now.friction);
+    if constexpr (E.rotates()) S::row_to_floats(values + LastStepRow::turn, now.turn);
+    S::row_to_floats(values + LastStepRow::velocity_rate, now.velocity_rate);
+    if constexpr (E.rotates()) S::row_to_floats(values + LastStepRow::surface_spin_rate, now.surface_spin_rate);
   }
 
   /// Velocities that a step's forces, and those of the step before, are multiplied by.
@@ -107,31 +147,25 @@ template <class S, MotionEffects E> struct MotionLoop {
     Row then;  ///< what it adds to that of the step before, negative
     Row early; ///< for the half step before t_n: the kick up to t_n is half of the whole
   };
-  Motion at_once(Row mean, Row gained, double* rate) {
+  Motion at_once(Row mean, Row gained, Row last_rate) {
     Motion motion;
-    motion.now = S::row_fma(share_of_step, S::row_load(rate), mean);
+    motion.now = S::row_fma(share_of_step, last_rate, mean);
     motion.then = twelfth * gained;
     if constexpr (E.energies()) motion.early = half * S::row_fnma(S::row_broadcast(0.25), gained, motion.now);
-    S::row_store(rate, gained * per_second);
     return motion;
   }
 
-  /// The rows of the step before come out cleared: they are the next step's.
-  void take(Row& sum, Row& before, const DampingRow& now, DampingRow& then, const Motion& moved) {
-    take(sum, before, now.force, then.force, moved);
-  }
-  void take(Row& sum, Row& before, const ForceRow& now, ForceRow& then, const Motion& moved, const Motion& turned) {
-    take(sum, before, now.force, then.force, moved);
-    if constexpr (E.rotates()) take(sum, before, now.turn, then.turn, turned);
-  }
-  void take(Row& sum, Row& before, const double* now, double* then, const Motion& motion) {
-    const Row force = S::row_load(now), last_force = S::row_load(then);
+  void take(Row& sum, Row& before, Row force, Row last_force, const Motion& motion) {
     sum = S::row_fnma(force, motion.now, sum);
     sum = S::row_fma(last_force, motion.then, sum);
     if constexpr (E.energies()) {
       before = S::row_fnma(force, motion.early, before);
       before = S::row_fma(last_force, motion.then, before);
     }
+  }
+  /// The rows of the step before come out cleared: they are the next step's.
+  void take_cleared(Row& sum, Row& before, const double* now, double* then, const Motion& motion) {
+    take(sum, before, S::row_load(now), S::row_load(then), motion);
     S::row_store(then, zero);
   }
 

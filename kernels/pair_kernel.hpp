@@ -262,29 +262,27 @@ template <class S, ContactEffects E> struct PairLoop {
         S::row_store(j.turn, S::row_load(j.turn) + turns[lane]);
       }
     }
-    if constexpr (E.ledger() && E.damped()) {
-      Row damping[width];
+    if constexpr (E.ledger() && (E.damped() || E.rubs())) add_losses(pairs, lanes, c, f);
+  }
+
+  [[gnu::always_inline]] void add_losses(const RowPair* pairs, unsigned lanes, const ContactGeometry<S>& c,
+                                         const ContactForces<S>& f) {
+    using Floats = typename D::Eight;
+    const Vector zero = S::broadcast(0.0);
+    Row damping[width], rubbing[width];
+    for (int lane = 0; lane < width; ++lane) damping[lane] = rubbing[lane] = D::row_broadcast(0.0);
+    if constexpr (E.damped())
       S::rows((zero - f.damping) * c.nx, (zero - f.damping) * c.ny, (zero - f.damping) * c.nz, zero, damping);
-      for (unsigned lane = 0; lane < lanes; ++lane) {
-        double* i = row_at(a.granules.kinds.damping_granule, pairs[lane].first_offset).force;
-        double* j = row_at(a.granules.kinds.damping_granule, pairs[lane].second_offset).force;
-        S::row_store(i, S::row_load(i) + damping[lane]);
-        S::row_store(j, S::row_load(j) - damping[lane]);
-      }
-    }
-    if constexpr (E.ledger() && E.rubs()) {
-      Row rubbing[width];
-      S::rows(f.rx, f.ry, f.rz, zero, rubbing);
-      for (unsigned lane = 0; lane < lanes; ++lane) {
-        ForceRow& i = row_at(a.granules.kinds.friction_granule, pairs[lane].first_offset);
-        ForceRow& j = row_at(a.granules.kinds.friction_granule, pairs[lane].second_offset);
-        S::row_store(i.force, S::row_load(i.force) + rubbing[lane]);
-        S::row_store(j.force, S::row_load(j.force) - rubbing[lane]);
-        if constexpr (E.rotates()) {
-          S::row_store(i.turn, S::row_load(i.turn) + turns[lane]);
-          S::row_store(j.turn, S::row_load(j.turn) + turns[lane]);
-        }
-      }
+    if constexpr (E.rubs()) S::rows(f.rx, f.ry, f.rz, zero, rubbing);
+    LossRow* loss = a.granules.loss;
+#pragma GCC unroll 16
+    for (unsigned lane = 0; lane < width; ++lane) {
+      if (lane >= lanes) break;
+      const typename Floats::Vector both = Floats::of_rows(damping[lane], rubbing[lane]);
+      float* const i = row_at(loss, pairs[lane].first_offset).damping;
+      float* const j = row_at(loss, pairs[lane].second_offset).damping;
+      Floats::store(i, Floats::load(i) + both);
+      Floats::store(j, Floats::load(j) - both);
     }
   }
 

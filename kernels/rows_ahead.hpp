@@ -34,14 +34,17 @@ private:
       next_ = then_.first;
       last_ = then_.last;
       then_ = {};
+      to_be_moved_ = true;
     }
     prefetch(granules_.position + next_);
+    if constexpr (ledger) prefetch(granules_.loss + next_);
     for (std::uint32_t row = next_; row < next_ + 2; ++row) {
       prefetch(granules_.motion + row);
       prefetch(granules_.force + row);
-      if constexpr (ledger) prefetch(granules_.kinds.friction_granule + row);
+      if constexpr (ledger) {
+        if (to_be_moved_) prefetch(granules_.last_step + row); // no pair reads it
+      }
     }
-    if constexpr (ledger) prefetch(granules_.kinds.damping_granule + next_);
     next_ += 2;
     return true;
   }
@@ -50,6 +53,7 @@ private:
   GranuleArrays granules_;
   std::uint32_t next_, last_;
   IndexRange then_;
+  bool to_be_moved_ = false; ///< the rows asked for are those of `then_`
   static constexpr std::uint32_t one = 256;
   std::uint32_t rate_ = 0, due_ = 0; ///< rows per call, and not yet asked for; a row counts `one`
 };

@@ -151,19 +151,19 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       Row damping[width];
       S::rows((zero - f.damping) * c.nx, (zero - f.damping) * c.ny, (zero - f.damping) * c.nz, zero, damping);
       for (unsigned lane = 0; lane < lanes; ++lane) {
-        double* i = a.granules.kinds.damping_wall[list[lane]].force;
+        double* i = a.granules.wall_loss.damping[list[lane]].force;
         S::row_store(i, S::row_load(i) + damping[lane]);
-        a.granules.kinds.touches_wall[list[lane]] = 1;
+        a.granules.wall_loss.touches[list[lane]] = 1;
       }
     }
     if constexpr (E.ledger() && E.rubs()) {
       Row rubbing[width];
       S::rows(f.rx, f.ry, f.rz, zero, rubbing);
       for (unsigned lane = 0; lane < lanes; ++lane) {
-        ForceRow& i = a.granules.kinds.friction_wall[list[lane]];
+        ForceRow& i = a.granules.wall_loss.friction[list[lane]];
         S::row_store(i.force, S::row_load(i.force) + rubbing[lane]);
         if constexpr (E.rotates()) S::row_store(i.turn, S::row_load(i.turn) + turns[lane]);
-        a.granules.kinds.touches_wall[list[lane]] = 1;
+        a.granules.wall_loss.touches[list[lane]] = 1;
       }
     }
   }

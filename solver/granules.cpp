@@ -12,55 +12,56 @@ template <class T> void clear_rows(RowArray<T>& rows, std::uint32_t first, std::
 }
 } // namespace
 
-ForcesByKind::ForcesByKind(std::size_t rows)
-    : damping_granule(rows), damping_wall(rows), friction_granule(rows), friction_wall(rows), touches_wall(rows) {
-  clear(0, static_cast<std::uint32_t>(rows));
+WallLosses::WallLosses(std::size_t rows) : damping(rows), friction(rows), touches(rows) {
+  const auto all = static_cast<std::uint32_t>(rows);
+  clear_rows(damping, 0, all);
+  clear_rows(friction, 0, all);
+  clear_rows(touches, 0, all);
 }
 
-kernels::KindRows ForcesByKind::arrays() {
-  return {damping_granule.data(), damping_wall.data(), friction_granule.data(), friction_wall.data(),
-          touches_wall.data()};
+kernels::WallLossRows WallLosses::arrays() {
+  return {damping.data(), friction.data(), touches.data()};
 }
 
-void ForcesByKind::clear(std::uint32_t first, std::uint32_t last) {
-  clear_rows(damping_granule, first, last);
-  clear_rows(damping_wall, first, last);
-  clear_rows(friction_granule, first, last);
-  clear_rows(friction_wall, first, last);
-  clear_rows(touches_wall, first, last);
-}
-
-void ForcesByKind::take(const ForcesByKind& from, const std::uint32_t* order, std::uint32_t first, std::uint32_t last) {
-  if (damping_granule.size() == 0) return;
-  for (std::uint32_t k = first; k < last; ++k) {
-    damping_granule[k] = from.damping_granule[order[k]];
-    friction_granule[k] = from.friction_granule[order[k]];
-    touches_wall[k] = from.touches_wall[order[k]];
-    damping_wall[k] = from.damping_wall[order[k]];
-    friction_wall[k] = from.friction_wall[order[k]];
+void WallLosses::clear(std::uint32_t first, std::uint32_t last) {
+  if (touches.size() == 0) return;
+  for (std::uint32_t i = first; i < last; ++i) {
+    if (touches[i] == 0) continue;
+    damping[i] = {};
+    friction[i] = {};
+    touches[i] = 0;
   }
 }
 
-ForcesByKind ForcesByKind::copy() const {
-  ForcesByKind other;
-  other.damping_granule = damping_granule.copy();
-  other.damping_wall = damping_wall.copy();
-  other.friction_granule = friction_granule.copy();
-  other.friction_wall = friction_wall.copy();
-  other.touches_wall = touches_wall.copy();
+void WallLosses::take(const WallLosses& from, const std::uint32_t* order, std::uint32_t first, std::uint32_t last) {
+  if (touches.size() == 0) return;
+  for (std::uint32_t k = first; k < last; ++k) {
+    if (from.touches[order[k]] == 0) continue;
+    damping[k] = from.damping[order[k]];
+    friction[k] = from.friction[order[k]];
+    touches[k] = 1;
+  }
+}
+
+WallLosses WallLosses::copy() const {
+  WallLosses other;
+  other.damping = damping.copy();
+  other.friction = friction.copy();
+  other.touches = touches.copy();
   return other;
 }
 
 Granules::Granules(std::size_t count, GranuleStorage storage)
     : position(count + ghosts), motion(count + ghosts), predicted(storage.predicted ? count + ghosts : 0),
-      force(count + ghosts), id(count + ghosts), population(count + ghosts), kinds(storage.ledger ? count + ghosts : 0),
-      kinds_before(storage.ledger ? count + ghosts : 0), acceleration(storage.ledger ? count + ghosts : 0),
+      force(count + ghosts), id(count + ghosts), population(count + ghosts), loss(storage.ledger ? count + ghosts : 0),
+      last_step(loss.size()), wall_loss(loss.size()), wall_loss_before(loss.size()),
       count_(static_cast<std::uint32_t>(count)), spare_position_(count + ghosts), spare_predicted_(predicted.size()),
       spare_id_(count + ghosts), spare_population_(count + ghosts), share_(storage.shares ? count + ghosts : 0),
-      spare_share_(share_.size()), spare_acceleration_(acceleration.size()) {
+      spare_share_(share_.size()), spare_last_step_(last_step.size()) {
   for (std::size_t i = 0; i < share_.size(); ++i) share_[i] = 0.5; // nothing has touched yet
   clear_forces(0, count_ + ghosts);
-  clear_rows(acceleration, 0, count_ + ghosts);
+  clear_rows(loss, 0, count_ + ghosts);
+  clear_rows(last_step, 0, count_ + ghosts);
 }
 
 kernels::GranuleArrays Granules::arrays() {
@@ -70,9 +71,10 @@ kernels::GranuleArrays Granules::arrays() {
   a.predicted = predicted.size() > 0 ? predicted.data() : motion.data();
   a.force = force.data();
   a.population = population.data();
-  a.kinds = kinds.arrays();
-  a.kinds_before = kinds_before.arrays();
-  a.acceleration = acceleration.data();
+  a.loss = loss.data();
+  a.last_step = last_step.data();
+  a.wall_loss = wall_loss.arrays();
+  a.wall_loss_before = wall_loss_before.arrays();
   a.ghost = count_;
   return a;
 }
@@ -95,9 +97,9 @@ void Granules::permute(const std::uint32_t* order, std::uint32_t first, std::uin
     for (std::uint32_t k = first; k < last; ++k) spare_predicted_[k] = predicted[order[k]];
   if (share_.size() > 0)
     for (std::uint32_t k = first; k < last; ++k) spare_share_[k] = share_[order[k]];
-  if (acceleration.size() > 0)
-    for (std::uint32_t k = first; k < last; ++k) spare_acceleration_[k] = acceleration[order[k]];
-  kinds.take(kinds_before, order, first, last);
+  if (last_step.size() > 0)
+    for (std::uint32_t k = first; k < last; ++k) spare_last_step_[k] = last_step[order[k]];
+  wall_loss.take(wall_loss_before, order, first, last);
 }
 
 void Granules::swap_permuted() {
@@ -107,14 +109,14 @@ void Granules::swap_permuted() {
   predicted.swap(spare_predicted_);
   share_.swap(spare_share_);
   motion.swap_memory(force); // where permute() put the rows
-  acceleration.swap(spare_acceleration_);
-  age_kinds(); // permute() put the last step's into the place of this one's
+  last_step.swap(spare_last_step_);
+  age_losses(); // permute() put the last step's into the place of this one's
   set_ghosts();
 }
 
 void Granules::clear_forces(std::uint32_t first, std::uint32_t last) {
   clear_rows(force, first, last);
-  kinds.clear(first, last);
+  wall_loss.clear(first, last);
   if (share_.size() > 0)
     for (std::uint32_t i = first; i < last; ++i) force[i].friction_share = share_[i];
 }

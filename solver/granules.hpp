@@ -12,23 +12,23 @@ namespace grandamp {
 /// What the rows must hold besides position, motion and force.
 struct GranuleStorage {
   bool predicted = false; ///< velocities predicted to the full step (verlet)
-  bool ledger = false;    ///< forces by mechanism, and accelerations
+  bool ledger = false;    ///< forces by mechanism, and what it remembers of the step before
   bool shares = false;    ///< ForceRow::friction_share lasts from step to step
 };
 
-/// Forces by kind, for the ledger; empty without one.
-struct ForcesByKind {
-  RowArray<kernels::DampingRow> damping_granule, damping_wall;
-  RowArray<kernels::ForceRow> friction_granule, friction_wall;
-  RowArray<std::uint8_t> touches_wall;
+/// Walls' forces that take energy, for the ledger; empty without one. Rows that are not marked in `touches` are zero.
+struct WallLosses {
+  RowArray<kernels::DampingRow> damping;
+  RowArray<kernels::ForceRow> friction;
+  RowArray<std::uint8_t> touches;
 
-  ForcesByKind() = default;
-  explicit ForcesByKind(std::size_t rows);
-  kernels::KindRows arrays();
+  WallLosses() = default;
+  explicit WallLosses(std::size_t rows);
+  kernels::WallLossRows arrays();
   void clear(std::uint32_t first, std::uint32_t last);
-  /// Row k becomes what row order[k] of `from` is.
-  void take(const ForcesByKind& from, const std::uint32_t* order, std::uint32_t first, std::uint32_t last);
-  ForcesByKind copy() const;
+  /// Row k, which must be zero, becomes what row order[k] of `from` is.
+  void take(const WallLosses& from, const std::uint32_t* order, std::uint32_t first, std::uint32_t last);
+  WallLosses copy() const;
 };
 
 /// Structure of arrays. Each array has two ghost rows at its end (kernels::GranuleArrays).
@@ -45,8 +45,9 @@ public:
   RowArray<kernels::ForceRow> force;
   RowArray<std::uint32_t> id; ///< scene order, by row
   RowArray<std::uint8_t> population;
-  ForcesByKind kinds, kinds_before;                ///< of this step, and of the one before
-  RowArray<kernels::AccelerationRow> acceleration; ///< over the step before
+  RowArray<kernels::LossRow> loss;          ///< ledger only, zero between steps
+  RowArray<kernels::LastStepRow> last_step; ///< ledger only
+  WallLosses wall_loss, wall_loss_before;   ///< of this step, and of the one before
 
   kernels::GranuleArrays arrays();
 
@@ -56,8 +57,8 @@ public:
   void permute(const std::uint32_t* order, std::uint32_t first, std::uint32_t last);
   void swap_permuted();
   void clear_forces(std::uint32_t first, std::uint32_t last);
-  /// After a step: its forces by kind are those of the step before.
-  void age_kinds() noexcept { std::swap(kinds, kinds_before); }
+  /// After a step: its losses at walls are those of the step before.
+  void age_losses() noexcept { std::swap(wall_loss, wall_loss_before); }
   /// Puts the two ghost rows in place.
   void set_ghosts();
 
@@ -68,7 +69,7 @@ private:
   RowArray<std::uint32_t> spare_id_;
   RowArray<std::uint8_t> spare_population_;
   RowArray<double> share_, spare_share_;
-  RowArray<kernels::AccelerationRow> spare_acceleration_;
+  RowArray<kernels::LastStepRow> spare_last_step_;
 };
 
 } // namespace grandamp

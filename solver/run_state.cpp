@@ -34,8 +34,8 @@ void check_numbers(const RunState& state) {
       if (!std::isfinite(value)) refuse(fmt::format("{} is not finite", info.name));
     } else if constexpr (std::is_same_v<Value, std::int64_t>) {
       demand_range(info.name, value, -1, most_counted);
-    } else if constexpr (std::is_same_v<Value, std::vector<double>>) {
-      for (const double each : value)
+    } else if constexpr (std::is_same_v<Value, std::vector<double>> || std::is_same_v<Value, std::vector<float>>) {
+      for (const auto each : value)
         if (std::isnan(each)) refuse(fmt::format("{} holds what is no number", info.name));
     }
   });

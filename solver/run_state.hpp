@@ -50,9 +50,9 @@ struct RunState {
   std::vector<double> surface_spin;
   std::vector<double> predicted_velocity;
   std::vector<double> predicted_surface_spin;
-  std::vector<double> velocity_rate;
-  std::vector<double> surface_spin_rate;
-  std::vector<double> damping_granule, friction_granule, friction_granule_turn;
+  std::vector<float> velocity_rate;
+  std::vector<float> surface_spin_rate;
+  std::vector<float> damping_granule, friction_granule, friction_granule_turn;
   std::vector<std::uint32_t> at_wall; ///< rows of granules, rising; one entry of the next three for each
   std::vector<double> damping_wall, friction_wall, friction_wall_turn;
   std::vector<double> friction_share;
@@ -129,7 +129,7 @@ struct FieldInfo {
 };
 
 /// Calls field(FieldInfo, value) for everything that there is: double, std::int64_t, bool, and vectors of double,
-/// std::uint32_t and std::uint8_t. `State` is RunState or const RunState.
+/// float, std::uint32_t and std::uint8_t. `State` is RunState or const RunState.
 template <class State, class Field> void visit_fields(State& s, Field&& field) {
   field(FieldInfo{"step_number", "1", "steps done"}, s.step_number);
   field(FieldInfo{"steps", "1", "steps of the whole run"}, s.steps);

@@ -107,8 +107,8 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_co
   auto position = granules_.position.copy();
   auto motion = granules_.motion.copy();
   auto predicted = granules_.predicted.copy();
-  auto acceleration = granules_.acceleration.copy();
-  ForcesByKind before = granules_.kinds_before.copy();
+  auto last_step = granules_.last_step.copy();
+  WallLosses before = granules_.wall_loss_before.copy();
   const EnclosureState enclosure = enclosure_;
   const ListAge age = age_;
   const GuardStatistics guards = guards_;
@@ -133,8 +133,8 @@ StepRecord Stepper::trial(bool energies, RowArray<MotionRow>* mean, bool keep_co
   granules_.position = std::move(position);
   granules_.motion = std::move(motion);
   granules_.predicted = std::move(predicted);
-  granules_.acceleration = std::move(acceleration);
-  granules_.kinds_before = std::move(before);
+  granules_.last_step = std::move(last_step);
+  granules_.wall_loss_before = std::move(before);
   enclosure_ = enclosure;
   age_ = age;
   guards_ = guards;
@@ -162,7 +162,7 @@ StepRecord Stepper::advance(bool energies) {
   for (std::size_t k = 0; k < 3; ++k) kick[k] = kick[k] * part_ - enclosure.velocity_change[k];
   boundary_forces(kernels);
   sweep(kernels, kick, enclosure.mean_velocity);
-  granules_.age_kinds();
+  granules_.age_losses();
   StepRecord record = collect(reaction, enclosure);
   record.until = ledger_at(record);
   return record;

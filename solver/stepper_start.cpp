@@ -13,6 +13,7 @@ namespace grandamp {
 
 static_assert(most_granules + 2 <= kernels::most_rows); // and the two ghosts
 
+using kernels::LastStepRow;
 using kernels::MotionRow;
 using kernels::Observation;
 using kernels::PositionRow;
@@ -233,13 +234,15 @@ void Stepper::take_half_step_back() {
       const double spun = 0.5 * (after.surface_spin[k] - before.surface_spin[k]);
       before.velocity[k] -= gained;
       before.surface_spin[k] -= spun;
-      if (granules_.acceleration.size() == 0) continue;
-      granules_.acceleration[i].velocity[k] = gained / (0.5 * time_step_);
-      granules_.acceleration[i].surface_spin[k] = spun / (0.5 * time_step_);
+      if (granules_.last_step.size() == 0) continue;
+      float* const last = granules_.last_step[i].values; // and no forces: there is no step before
+      last[LastStepRow::velocity_rate + k] = static_cast<float>(gained / (0.5 * time_step_));
+      last[LastStepRow::surface_spin_rate + k] = static_cast<float>(spun / (0.5 * time_step_));
+      last[LastStepRow::damping + k] = last[LastStepRow::friction + k] = last[LastStepRow::turn + k] = 0.0F;
     }
   granules_.motion = std::move(motion);
   granules_.predicted = std::move(predicted);
-  granules_.kinds.clear(0, count);
+  granules_.wall_loss.clear(0, count);
   for (SegmentResult& result : results_)
     for (const kernels::ContactResult* contact : result.contacts()) {
       guards_.max_overlap = std::max(guards_.max_overlap, contact->max_overlap);

@@ -7,9 +7,9 @@
 
 namespace grandamp {
 
-using kernels::AccelerationRow;
 using kernels::DampingRow;
 using kernels::ForceRow;
+using kernels::LastStepRow;
 using kernels::MotionRow;
 
 namespace {
@@ -20,19 +20,22 @@ template <class Rows, class State, class Use> void each_part(Rows& granules, Sta
   use(granules.motion, &MotionRow::surface_spin, s.surface_spin);
   use(granules.predicted, &MotionRow::velocity, s.predicted_velocity);
   use(granules.predicted, &MotionRow::surface_spin, s.predicted_surface_spin);
-  use(granules.acceleration, &AccelerationRow::velocity, s.velocity_rate);
-  use(granules.acceleration, &AccelerationRow::surface_spin, s.surface_spin_rate);
-  auto& kinds = granules.kinds_before;
-  use(kinds.damping_granule, &DampingRow::force, s.damping_granule);
-  use(kinds.friction_granule, &ForceRow::force, s.friction_granule);
-  use(kinds.friction_granule, &ForceRow::turn, s.friction_granule_turn);
+}
+
+/// Calls use(place, values) for all that the ledger remembers of the step before, place in LastStepRow.
+template <class State, class Use> void each_of_last_step(State& s, Use use) {
+  use(LastStepRow::damping, s.damping_granule);
+  use(LastStepRow::friction, s.friction_granule);
+  use(LastStepRow::turn, s.friction_granule_turn);
+  use(LastStepRow::velocity_rate, s.velocity_rate);
+  use(LastStepRow::surface_spin_rate, s.surface_spin_rate);
 }
 
 /// The same for what is held of the granules at walls alone.
-template <class Kinds, class State, class Use> void each_wall_part(Kinds& kinds, State& s, Use use) {
-  use(kinds.damping_wall, &DampingRow::force, s.damping_wall);
-  use(kinds.friction_wall, &ForceRow::force, s.friction_wall);
-  use(kinds.friction_wall, &ForceRow::turn, s.friction_wall_turn);
+template <class Losses, class State, class Use> void each_wall_part(Losses& losses, State& s, Use use) {
+  use(losses.damping, &DampingRow::force, s.damping_wall);
+  use(losses.friction, &ForceRow::force, s.friction_wall);
+  use(losses.friction, &ForceRow::turn, s.friction_wall_turn);
 }
 
 std::vector<double> places_of(const RowArray<kernels::PositionRow>& rows, std::uint32_t count) {
@@ -108,11 +111,20 @@ void Stepper::save(RunState& s) const {
     for (std::uint32_t i = 0; i < count; ++i)
       values.insert(values.end(), std::begin(rows[i].*part), std::end(rows[i].*part));
   });
+  each_of_last_step(s, [&](int place, std::vector<float>& values) {
+    values.clear();
+    if (granules_.last_step.size() == 0) return;
+    values.reserve(3 * std::size_t{count});
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const float* const row = granules_.last_step[i].values + place;
+      values.insert(values.end(), row, row + 3);
+    }
+  });
   s.at_wall.clear();
-  const ForcesByKind& kinds = granules_.kinds_before;
-  for (std::uint32_t i = 0; i < (kinds.touches_wall.size() > 0 ? count : 0); ++i)
-    if (kinds.touches_wall[i] != 0) s.at_wall.push_back(i);
-  each_wall_part(kinds, s, [&s](const auto& rows, auto part, std::vector<double>& values) {
+  const WallLosses& losses = granules_.wall_loss_before;
+  for (std::uint32_t i = 0; i < (losses.touches.size() > 0 ? count : 0); ++i)
+    if (losses.touches[i] != 0) s.at_wall.push_back(i);
+  each_wall_part(losses, s, [&s](const auto& rows, auto part, std::vector<double>& values) {
     values.clear();
     for (const std::uint32_t i : s.at_wall)
       values.insert(values.end(), std::begin(rows[i].*part), std::end(rows[i].*part));
@@ -209,8 +221,12 @@ void Stepper::restore_granules(const RunState& s) {
     for (std::size_t i = 0; i < values.size() / 3; ++i)
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::begin(rows[i].*part));
   });
-  for (const std::uint32_t i : s.at_wall) granules_.kinds_before.touches_wall[i] = 1;
-  each_wall_part(granules_.kinds_before, s, [&s](auto& rows, auto part, const std::vector<double>& values) {
+  each_of_last_step(s, [this](int place, const std::vector<float>& values) {
+    for (std::size_t i = 0; i < values.size() / 3; ++i)
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, granules_.last_step[i].values + place);
+  });
+  for (const std::uint32_t i : s.at_wall) granules_.wall_loss_before.touches[i] = 1;
+  each_wall_part(granules_.wall_loss_before, s, [&s](auto& rows, auto part, const std::vector<double>& values) {
     for (std::size_t k = 0; k < s.at_wall.size(); ++k)
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * k), 3, std::begin(rows[s.at_wall[k]].*part));
   });

@@ -89,7 +89,7 @@ Checkpoint good_checkpoint(const Plan& plan) {
   s.surface_spin = {0.5, 0.4, 0.3, 0.2, 0.1, 0.0};
   for (auto* ledger :
        {&s.velocity_rate, &s.surface_spin_rate, &s.damping_granule, &s.friction_granule, &s.friction_granule_turn})
-    *ledger = s.velocity;
+    ledger->assign(s.velocity.begin(), s.velocity.end());
   s.at_wall = {1};
   s.damping_wall = s.friction_wall = s.friction_wall_turn = {0.1, 0.2, 0.3};
   s.list.segment_rows = {0, 2};

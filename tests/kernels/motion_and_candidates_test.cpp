@@ -45,26 +45,29 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
               fill(bed.force, 3.0, rotates);
               for (ForceRow& row : bed.force)
                 if (counts) row.touching = static_cast<double>(random.engine() % 40);
-              fill(bed.damping_granule, 0.3, false);
               fill(bed.damping_wall, 0.4, false);
-              fill(bed.friction_granule, 0.5, rotates);
-              fill(bed.friction_wall, 0.6, rotates);
-              fill(bed.damping_granule_before, 0.35, false);
               fill(bed.damping_wall_before, 0.45, false);
-              fill(bed.friction_granule_before, 0.55, rotates);
+              fill(bed.friction_wall, 0.6, rotates);
               fill(bed.friction_wall_before, 0.65, rotates);
+              using Last = LastStepRow;
+              for (std::size_t i = 0; i < bed.loss.size(); ++i) {
+                float* const then = bed.last_step[i].values;
+                for (int k = 0; k < 3; ++k) {
+                  bed.loss[i].damping[k] = static_cast<float>(random(-0.3, 0.3));
+                  bed.loss[i].friction[k] = static_cast<float>(random(-0.5, 0.5));
+                  then[Last::damping + k] = static_cast<float>(random(-0.35, 0.35));
+                  then[Last::friction + k] = static_cast<float>(random(-0.55, 0.55));
+                  then[Last::turn + k] = static_cast<float>(rotates ? random(-0.55, 0.55) : 0.0);
+                  then[Last::velocity_rate + k] = static_cast<float>(random(-1.0e4, 1.0e4));
+                  then[Last::surface_spin_rate + k] = static_cast<float>(random(-1.0e4, 1.0e4));
+                }
+              }
               for (std::uint32_t i = 0; i < bed.count(); ++i) { // at a wall now, before, both, or neither
                 bed.touches_wall[i] = i % 2;
                 bed.touched_wall_before[i] = i / 2 % 2;
                 if (bed.touches_wall[i] == 0) bed.damping_wall[i] = {}, bed.friction_wall[i] = {};
                 if (bed.touched_wall_before[i] == 0) bed.damping_wall_before[i] = {}, bed.friction_wall_before[i] = {};
               }
-              for (AccelerationRow& row : bed.acceleration)
-                for (int k = 0; k < 3; ++k) {
-                  row.velocity[k] = random(-1.0e4, 1.0e4);
-                  row.surface_spin[k] = random(-1.0e4, 1.0e4);
-                }
-
               const reference::Vector gravity = accelerated ? reference::Vector{1.0, -3.0, -9.81} : reference::Vector{};
               const reference::Vector frame_kick =
                   accelerated ? reference::Vector{0.01, 0.0, 0.02} : reference::Vector{};
@@ -85,23 +88,27 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                   expected.mass_moment[k] += g.mass * before.position[k];
                   const double gained = g.velocity[k] - before.velocity[k];
                   const double spun = g.radius * (g.spin[k] - before.spin[k]);
-                  const double v = mean.velocity[k] + step * bed.acceleration[i].velocity[k] / 12.0;
-                  const double s = g.radius * mean.spin[k] + step * bed.acceleration[i].surface_spin[k] / 12.0;
-                  const auto work = [&](const auto& now, const auto& then, double& lost, double& early) {
-                    const auto add = [&](double force, double then_force, double at, double kick) {
-                      lost -= step * (force * at - then_force * kick / 12.0);
-                      early -= step * (0.5 * force * (at - 0.25 * kick) - then_force * kick / 12.0);
-                    };
-                    add(now.force[k], then.force[k], v, gained);
-                    if constexpr (requires { now.turn; }) add(now.turn[k], then.turn[k], s, spun);
-                  };
+                  const float* const then = bed.last_step[i].values + k;
+                  const double v = mean.velocity[k] + step * then[Last::velocity_rate] / 12.0;
+                  const double s = g.radius * mean.spin[k] + step * then[Last::surface_spin_rate] / 12.0;
                   Losses &lost = expected.lost, &early = expected.early;
-                  work(bed.damping_granule[i], bed.damping_granule_before[i], lost.normal_granule,
+                  const auto work = [&](double force, double then_force, double at, double kick, double& all,
+                                        double& first_half) {
+                    all -= step * (force * at - then_force * kick / 12.0);
+                    first_half -= step * (0.5 * force * (at - 0.25 * kick) - then_force * kick / 12.0);
+                  };
+                  work(bed.loss[i].damping[k], then[Last::damping], v, gained, lost.normal_granule,
                        early.normal_granule);
-                  work(bed.damping_wall[i], bed.damping_wall_before[i], lost.normal_wall, early.normal_wall);
-                  work(bed.friction_granule[i], bed.friction_granule_before[i], lost.friction_granule,
+                  work(bed.damping_wall[i].force[k], bed.damping_wall_before[i].force[k], v, gained, lost.normal_wall,
+                       early.normal_wall);
+                  work(bed.loss[i].friction[k], then[Last::friction], v, gained, lost.friction_granule,
                        early.friction_granule);
-                  work(bed.friction_wall[i], bed.friction_wall_before[i], lost.friction_wall, early.friction_wall);
+                  const ForceRow &wall = bed.friction_wall[i], &wall_before = bed.friction_wall_before[i];
+                  work(wall.force[k], wall_before.force[k], v, gained, lost.friction_wall, early.friction_wall);
+                  work(wall.turn[k], wall_before.turn[k], s, spun, lost.friction_wall, early.friction_wall);
+                  // What of the turn is not the walls' is the other granules'.
+                  work(bed.force[i].turn[k] - wall.turn[k], then[Last::turn], s, spun, lost.friction_granule,
+                       early.friction_granule);
                 }
                 double square = 0.0;
                 for (std::size_t k = 0; k < 3; ++k) square += g.velocity[k] * g.velocity[k];
@@ -144,10 +151,8 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                   }
                   left += std::abs(bed.force[i].force[k]) + std::abs(bed.force[i].turn[k]);
                   if (effects.ledger())
-                    left += std::abs(bed.damping_granule_before[i].force[k]) +
+                    left += std::abs(bed.loss[i].damping[k]) + std::abs(bed.loss[i].friction[k]) +
                             std::abs(bed.damping_wall_before[i].force[k]) +
-                            std::abs(bed.friction_granule_before[i].force[k]) +
-                            std::abs(bed.friction_granule_before[i].turn[k]) +
                             std::abs(bed.friction_wall_before[i].force[k]) +
                             std::abs(bed.friction_wall_before[i].turn[k]);
                 }
@@ -159,9 +164,16 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                   for (std::size_t k = 0; k < 3; ++k) {
                     const double gained = moved[i].velocity[k] - before.velocity[k];
                     const double spun = before.radius * (moved[i].spin[k] - before.spin[k]);
-                    CHECK(bed.acceleration[i].velocity[k] == doctest::Approx(gained / step).epsilon(1.0e-9));
+                    const float* const then = bed.last_step[i].values + k;
+                    const auto remembered = [](float value, double wanted) {
+                      CHECK(std::abs(value - wanted) <= 1.0e-7 * std::abs(wanted) + 1.0e-9);
+                    };
+                    remembered(then[Last::velocity_rate], gained / step);
+                    if (rotates) remembered(then[Last::surface_spin_rate], spun / step);
+                    remembered(then[Last::damping], untouched.loss[i].damping[k]);
+                    remembered(then[Last::friction], untouched.loss[i].friction[k]);
                     if (rotates)
-                      CHECK(bed.acceleration[i].surface_spin[k] == doctest::Approx(spun / step).epsilon(1.0e-9));
+                      remembered(then[Last::turn], untouched.force[i].turn[k] - untouched.friction_wall[i].turn[k]);
                   }
                 if (counts) {
                   CHECK(bed.force[i].touching == 0.0);

@@ -60,9 +60,10 @@ struct Bed {
   std::vector<reference::Granule> granules;
   std::vector<PositionRow> position;
   std::vector<MotionRow> motion;
-  std::vector<ForceRow> force, friction_granule, friction_wall, friction_granule_before, friction_wall_before;
-  std::vector<DampingRow> damping_granule, damping_wall, damping_granule_before, damping_wall_before;
-  std::vector<AccelerationRow> acceleration;
+  std::vector<ForceRow> force, friction_wall, friction_wall_before;
+  std::vector<LossRow> loss;
+  std::vector<LastStepRow> last_step;
+  std::vector<DampingRow> damping_wall, damping_wall_before;
   std::vector<std::uint8_t> population, touches_wall, touched_wall_before;
   std::size_t populations = 3;
   std::vector<reference::Law> laws; ///< populations x populations; of walls: the first row
@@ -89,11 +90,10 @@ struct Bed {
     a.predicted = motion.data();
     a.force = force.data();
     a.population = population.data();
-    a.kinds = {damping_granule.data(), damping_wall.data(), friction_granule.data(), friction_wall.data(),
-               touches_wall.data()};
-    a.kinds_before = {damping_granule_before.data(), damping_wall_before.data(), friction_granule_before.data(),
-                      friction_wall_before.data(), touched_wall_before.data()};
-    a.acceleration = acceleration.data();
+    a.loss = loss.data();
+    a.last_step = last_step.data();
+    a.wall_loss = {damping_wall.data(), friction_wall.data(), touches_wall.data()};
+    a.wall_loss_before = {damping_wall_before.data(), friction_wall_before.data(), touched_wall_before.data()};
     a.ghost = static_cast<std::uint32_t>(count());
     return a;
   }
@@ -180,14 +180,11 @@ inline Bed make_bed(ContactEffects effects, unsigned seed) {
   bed.force.resize(count + 2);
   for (std::size_t i = 0; i < count; ++i)
     bed.force[i].friction_share = 1.0 / (1.0 + std::max(bed.granules[i].touching, 1));
-  bed.friction_granule.resize(count + 2);
+  bed.loss.resize(count + 2);
+  bed.last_step.resize(count + 2);
   bed.friction_wall.resize(count + 2);
-  bed.damping_granule.resize(count + 2);
   bed.damping_wall.resize(count + 2);
-  bed.acceleration.resize(count + 2);
-  bed.friction_granule_before.resize(count + 2);
   bed.friction_wall_before.resize(count + 2);
-  bed.damping_granule_before.resize(count + 2);
   bed.damping_wall_before.resize(count + 2);
   bed.touches_wall.resize(count + 2);
   bed.touched_wall_before.resize(count + 2);
