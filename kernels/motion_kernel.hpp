@@ -78,6 +78,13 @@ template <class S, MotionEffects E> struct MotionLoop {
     moment = S::row_fma(mass, here, moment);
   }
 
+  /// Velocities that a step's forces, and those of the step before, are multiplied by.
+  struct Motion {
+    Row now;   ///< all that this step can tell of the one at t_n
+    Row then;  ///< what it adds to that of the step before, negative
+    Row early; ///< for the half step before t_n: the kick up to t_n is half of the whole
+  };
+
   /// Work that each kind of force took from the granule over the step, per unit of time. It is linear in the force:
   /// summing forces by kind and multiplying by the granule's velocity gives the sum over its contacts.
   ///
@@ -87,66 +94,50 @@ template <class S, MotionEffects E> struct MotionLoop {
   /// contact at eight steps is 2.8 % of its damping short (perf/ACCURACY.md). x''' dt^2 is half the change of velocity
   /// in the next step less that in the step before, so the next step finishes what this one begins.
   void dissipate(std::uint32_t i, Row mean, Row gained, Row mean_spin, Row spun, Row turned) {
+    using Floats = typename S::Eight;
     LossRow& loss = a.granules.loss[i];
-    const LastStep last = last_step(i);
-    const Motion moved = at_once(mean, gained, last.velocity_rate);
-    Motion spinning_so;
-    if constexpr (E.rotates()) spinning_so = at_once(mean_spin, spun, last.surface_spin_rate);
+    LastStepRow& last = a.granules.last_step[i];
+    const Motion moved = at_once(mean, gained, S::row_of_floats(last.velocity_rate));
+    take(lost.normal_granule, early.normal_granule, S::row_of_floats(loss.damping), S::row_of_floats(last.loss.damping),
+         moved);
+    take(lost.friction_granule, early.friction_granule, S::row_of_floats(loss.friction),
+         S::row_of_floats(last.loss.friction), moved);
+    if constexpr (E.rotates()) dissipate_turning(turned, mean_spin, spun, last);
+    if ((a.granules.wall_loss.touches[i] | a.granules.wall_loss_before.touches[i]) != 0)
+      dissipate_at_walls(i, moved, mean_spin, spun, last);
+    Floats::store(last.loss.damping, Floats::load(loss.damping)); // and friction, each time
+    Floats::store(loss.damping, Floats::broadcast(0.0F));
+    Floats::store(last.velocity_rate, Floats::of_rows(gained * per_second, spun * per_second));
+  }
+
+  /// All that turns a granule is friction, so that the change of spin in a step is the step's turn, and what this step
+  /// and the one before add to each other's velocities cancels. What of it walls do is told by dissipate_at_walls.
+  void dissipate_turning(Row turned, Row mean_spin, Row spun, const LastStepRow& last) {
+    lost.friction_granule = S::row_fnma(turned, mean_spin, lost.friction_granule);
+    if constexpr (E.energies()) {
+      const Row before_kick = S::row_fnma(S::row_broadcast(0.125), spun, half * mean_spin);
+      const Row spin = S::row_fnma(half * share_of_step, S::row_of_floats(last.surface_spin_rate), before_kick);
+      early.friction_granule = S::row_fnma(turned, spin, early.friction_granule);
+    }
+  }
+
+  void dissipate_at_walls(std::uint32_t i, const Motion& moved, Row mean_spin, Row spun, const LastStepRow& last) {
     const WallLossRows &walls = a.granules.wall_loss, &walls_before = a.granules.wall_loss_before;
-    if ((walls.touches[i] | walls_before.touches[i]) != 0) {
-      take_cleared(lost.normal_wall, early.normal_wall, walls.damping[i].force, walls_before.damping[i].force, moved);
-      ForceRow &now = walls.friction[i], &then = walls_before.friction[i];
-      take_cleared(lost.friction_wall, early.friction_wall, now.force, then.force, moved);
-      if constexpr (E.rotates()) {
-        take_cleared(lost.friction_wall, early.friction_wall, now.turn, then.turn, spinning_so);
-        turned = turned - S::row_load(now.turn);
-      }
-      walls_before.touches[i] = 0;
-    }
-    LastStep now;
-    now.damping = S::row_of_floats(loss.damping);
-    now.friction = S::row_of_floats(loss.friction);
-    S::Eight::store(loss.damping, S::Eight::broadcast(0.0F)); // and friction
-    take(lost.normal_granule, early.normal_granule, now.damping, last.damping, moved);
-    take(lost.friction_granule, early.friction_granule, now.friction, last.friction, moved);
-    now.velocity_rate = gained * per_second;
+    ForceRow &now = walls.friction[i], &then = walls_before.friction[i];
+    take_cleared(lost.normal_wall, early.normal_wall, walls.damping[i].force, walls_before.damping[i].force, moved);
+    take_cleared(lost.friction_wall, early.friction_wall, now.force, then.force, moved);
     if constexpr (E.rotates()) {
-      now.turn = turned;
-      take(lost.friction_granule, early.friction_granule, now.turn, last.turn, spinning_so);
-      now.surface_spin_rate = spun * per_second;
+      Row at_walls = zero, early_at_walls = zero;
+      take_cleared(at_walls, early_at_walls, now.turn, then.turn,
+                   at_once(mean_spin, spun, S::row_of_floats(last.surface_spin_rate)));
+      lost.friction_wall = lost.friction_wall + at_walls;
+      lost.friction_granule = lost.friction_granule - at_walls;
+      early.friction_wall = early.friction_wall + early_at_walls;
+      early.friction_granule = early.friction_granule - early_at_walls;
     }
-    remember(i, now);
+    walls_before.touches[i] = 0;
   }
 
-  struct LastStep {
-    Row damping, friction, turn, velocity_rate, surface_spin_rate;
-  };
-  LastStep last_step(std::uint32_t i) const {
-    const float* values = a.granules.last_step[i].values;
-    LastStep last;
-    last.damping = S::row_of_floats(values + LastStepRow::damping);
-    last.friction = S::row_of_floats(values + LastStepRow::friction);
-    if constexpr (E.rotates()) last.turn = S::row_of_floats(values + LastStepRow::turn);
-    last.velocity_rate = S::row_of_floats(values + LastStepRow::velocity_rate);
-    if constexpr (E.rotates()) last.surface_spin_rate = S::row_of_floats(values + LastStepRow::surface_spin_rate);
-    return last;
-  }
-  /// Fourth components are written over by what stands next.
-  void remember(std::uint32_t i, const LastStep& now) {
-    float* values = a.granules.last_step[i].values;
-    S::row_to_floats(values + LastStepRow::damping, now.damping);
-    S::row_to_floats(values + LastStepRow::friction, now.friction);
-    if constexpr (E.rotates()) S::row_to_floats(values + LastStepRow::turn, now.turn);
-    S::row_to_floats(values + LastStepRow::velocity_rate, now.velocity_rate);
-    if constexpr (E.rotates()) S::row_to_floats(values + LastStepRow::surface_spin_rate, now.surface_spin_rate);
-  }
-
-  /// Velocities that a step's forces, and those of the step before, are multiplied by.
-  struct Motion {
-    Row now;   ///< all that this step can tell of the one at t_n
-    Row then;  ///< what it adds to that of the step before, negative
-    Row early; ///< for the half step before t_n: the kick up to t_n is half of the whole
-  };
   Motion at_once(Row mean, Row gained, Row last_rate) {
     Motion motion;
     motion.now = S::row_fma(share_of_step, last_rate, mean);

@@ -36,19 +36,18 @@ struct alignas(32) DampingRow {
   double unused;
 };
 
-/// Forces of other granules that take energy, for the ledger. Friction's turn is that of ForceRow, less the walls'. In
-/// float, as LastStepRow: the ledger holds to 1e-5 at best, and what costs its time is memory.
+/// Forces of other granules that take energy, for the ledger; what turns the granule is not among them. In float: the
+/// ledger holds to 1e-5 at best, and what costs its time is memory.
 struct alignas(32) LossRow {
   float damping[4];  ///< N, three components
   float friction[4]; ///< N
 };
 
-/// What the ledger remembers of the step before: LossRow and friction's turn, N, and how fast velocity and spin
-/// changed, m/s^2; three components each, from these places on. In float: a correction of some per cent is made of it,
-/// and a row twice as long would be read and written in every step.
+/// What the ledger remembers of the step before; a correction of some per cent is made of it.
 struct alignas(64) LastStepRow {
-  static constexpr int damping = 0, friction = 3, turn = 6, velocity_rate = 9, surface_spin_rate = 12;
-  float values[16];
+  LossRow loss;
+  float velocity_rate[4];     ///< m/s^2, three components
+  float surface_spin_rate[4]; ///< m/s^2
 };
 
 /// The tangential spring of a contact in touch: its force on the first granule (N), and sqrt(R overlap) (m) at the

@@ -58,7 +58,6 @@ void check_granules(const RunState& s, const Plan& plan) {
   demand_length("granules/surface_spin_rate", s.surface_spin_rate.size(), ledger);
   demand_length("granules/damping_granule", s.damping_granule.size(), ledger);
   demand_length("granules/friction_granule", s.friction_granule.size(), ledger);
-  demand_length("granules/friction_granule_turn", s.friction_granule_turn.size(), ledger);
   for (std::size_t k = 0; k < s.at_wall.size(); ++k)
     if (s.at_wall[k] >= (ledger > 0 ? count : 0) || (k > 0 && s.at_wall[k] <= s.at_wall[k - 1]))
       refuse(fmt::format("at_wall/row holds {} where rows of granules rise", s.at_wall[k]));

@@ -52,7 +52,7 @@ struct RunState {
   std::vector<double> predicted_surface_spin;
   std::vector<float> velocity_rate;
   std::vector<float> surface_spin_rate;
-  std::vector<float> damping_granule, friction_granule, friction_granule_turn;
+  std::vector<float> damping_granule, friction_granule;
   std::vector<std::uint32_t> at_wall; ///< rows of granules, rising; one entry of the next three for each
   std::vector<double> damping_wall, friction_wall, friction_wall_turn;
   std::vector<double> friction_share;
@@ -156,8 +156,6 @@ template <class State, class Field> void visit_fields(State& s, Field&& field) {
   field(FieldInfo{"granules/surface_spin_rate", "m/s^2", "ledger: likewise", 3}, s.surface_spin_rate);
   field(FieldInfo{"granules/damping_granule", "N", "ledger: sum of such forces at t_(n-1)", 3}, s.damping_granule);
   field(FieldInfo{"granules/friction_granule", "N", "ledger: likewise", 3}, s.friction_granule);
-  field(FieldInfo{"granules/friction_granule_turn", "N", "ledger: their torque over the radius", 3},
-        s.friction_granule_turn);
   field(FieldInfo{"at_wall/row", "1", "ledger: place in granules/... of who touched a wall at t_(n-1)"}, s.at_wall);
   field(FieldInfo{"at_wall/damping", "N", "ledger: sum of such forces at t_(n-1)", 3}, s.damping_wall);
   field(FieldInfo{"at_wall/friction", "N", "ledger: likewise", 3}, s.friction_wall);

@@ -13,7 +13,6 @@ namespace grandamp {
 
 static_assert(most_granules + 2 <= kernels::most_rows); // and the two ghosts
 
-using kernels::LastStepRow;
 using kernels::MotionRow;
 using kernels::Observation;
 using kernels::PositionRow;
@@ -235,10 +234,10 @@ void Stepper::take_half_step_back() {
       before.velocity[k] -= gained;
       before.surface_spin[k] -= spun;
       if (granules_.last_step.size() == 0) continue;
-      float* const last = granules_.last_step[i].values; // and no forces: there is no step before
-      last[LastStepRow::velocity_rate + k] = static_cast<float>(gained / (0.5 * time_step_));
-      last[LastStepRow::surface_spin_rate + k] = static_cast<float>(spun / (0.5 * time_step_));
-      last[LastStepRow::damping + k] = last[LastStepRow::friction + k] = last[LastStepRow::turn + k] = 0.0F;
+      kernels::LastStepRow& last = granules_.last_step[i];
+      last.loss = {}; // there is no step before
+      last.velocity_rate[k] = static_cast<float>(gained / (0.5 * time_step_));
+      last.surface_spin_rate[k] = static_cast<float>(spun / (0.5 * time_step_));
     }
   granules_.motion = std::move(motion);
   granules_.predicted = std::move(predicted);

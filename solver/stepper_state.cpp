@@ -9,7 +9,6 @@ namespace grandamp {
 
 using kernels::DampingRow;
 using kernels::ForceRow;
-using kernels::LastStepRow;
 using kernels::MotionRow;
 
 namespace {
@@ -22,13 +21,12 @@ template <class Rows, class State, class Use> void each_part(Rows& granules, Sta
   use(granules.predicted, &MotionRow::surface_spin, s.predicted_surface_spin);
 }
 
-/// Calls use(place, values) for all that the ledger remembers of the step before, place in LastStepRow.
+/// Calls use(part, values) for all that the ledger remembers of the step before, part(row) being a LastStepRow's.
 template <class State, class Use> void each_of_last_step(State& s, Use use) {
-  use(LastStepRow::damping, s.damping_granule);
-  use(LastStepRow::friction, s.friction_granule);
-  use(LastStepRow::turn, s.friction_granule_turn);
-  use(LastStepRow::velocity_rate, s.velocity_rate);
-  use(LastStepRow::surface_spin_rate, s.surface_spin_rate);
+  use([](auto& row) { return row.loss.damping; }, s.damping_granule);
+  use([](auto& row) { return row.loss.friction; }, s.friction_granule);
+  use([](auto& row) { return row.velocity_rate; }, s.velocity_rate);
+  use([](auto& row) { return row.surface_spin_rate; }, s.surface_spin_rate);
 }
 
 /// The same for what is held of the granules at walls alone.
@@ -111,12 +109,12 @@ void Stepper::save(RunState& s) const {
     for (std::uint32_t i = 0; i < count; ++i)
       values.insert(values.end(), std::begin(rows[i].*part), std::end(rows[i].*part));
   });
-  each_of_last_step(s, [&](int place, std::vector<float>& values) {
+  each_of_last_step(s, [&](auto part, std::vector<float>& values) {
     values.clear();
     if (granules_.last_step.size() == 0) return;
     values.reserve(3 * std::size_t{count});
     for (std::uint32_t i = 0; i < count; ++i) {
-      const float* const row = granules_.last_step[i].values + place;
+      const float* const row = part(granules_.last_step[i]);
       values.insert(values.end(), row, row + 3);
     }
   });
@@ -221,9 +219,9 @@ void Stepper::restore_granules(const RunState& s) {
     for (std::size_t i = 0; i < values.size() / 3; ++i)
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, std::begin(rows[i].*part));
   });
-  each_of_last_step(s, [this](int place, const std::vector<float>& values) {
+  each_of_last_step(s, [this](auto part, const std::vector<float>& values) {
     for (std::size_t i = 0; i < values.size() / 3; ++i)
-      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, granules_.last_step[i].values + place);
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, part(granules_.last_step[i]));
   });
   for (const std::uint32_t i : s.at_wall) granules_.wall_loss_before.touches[i] = 1;
   each_wall_part(granules_.wall_loss_before, s, [&s](auto& rows, auto part, const std::vector<double>& values) {

@@ -87,8 +87,7 @@ Checkpoint good_checkpoint(const Plan& plan) {
   s.inverse_mass = {2.0e5, 2.0e5};
   s.velocity = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
   s.surface_spin = {0.5, 0.4, 0.3, 0.2, 0.1, 0.0};
-  for (auto* ledger :
-       {&s.velocity_rate, &s.surface_spin_rate, &s.damping_granule, &s.friction_granule, &s.friction_granule_turn})
+  for (auto* ledger : {&s.velocity_rate, &s.surface_spin_rate, &s.damping_granule, &s.friction_granule})
     ledger->assign(s.velocity.begin(), s.velocity.end());
   s.at_wall = {1};
   s.damping_wall = s.friction_wall = s.friction_wall_turn = {0.1, 0.2, 0.3};

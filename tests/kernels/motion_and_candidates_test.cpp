@@ -49,19 +49,17 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
               fill(bed.damping_wall_before, 0.45, false);
               fill(bed.friction_wall, 0.6, rotates);
               fill(bed.friction_wall_before, 0.65, rotates);
-              using Last = LastStepRow;
-              for (std::size_t i = 0; i < bed.loss.size(); ++i) {
-                float* const then = bed.last_step[i].values;
+              for (std::size_t i = 0; i < bed.loss.size(); ++i)
                 for (int k = 0; k < 3; ++k) {
-                  bed.loss[i].damping[k] = static_cast<float>(random(-0.3, 0.3));
-                  bed.loss[i].friction[k] = static_cast<float>(random(-0.5, 0.5));
-                  then[Last::damping + k] = static_cast<float>(random(-0.35, 0.35));
-                  then[Last::friction + k] = static_cast<float>(random(-0.55, 0.55));
-                  then[Last::turn + k] = static_cast<float>(rotates ? random(-0.55, 0.55) : 0.0);
-                  then[Last::velocity_rate + k] = static_cast<float>(random(-1.0e4, 1.0e4));
-                  then[Last::surface_spin_rate + k] = static_cast<float>(random(-1.0e4, 1.0e4));
+                  LastStepRow& then = bed.last_step[i];
+                  const auto number = [&](double size) { return static_cast<float>(random(-size, size)); };
+                  bed.loss[i].damping[k] = number(0.3);
+                  bed.loss[i].friction[k] = number(0.5);
+                  then.loss.damping[k] = number(0.35);
+                  then.loss.friction[k] = number(0.55);
+                  then.velocity_rate[k] = number(1.0e4);
+                  then.surface_spin_rate[k] = number(1.0e4);
                 }
-              }
               for (std::uint32_t i = 0; i < bed.count(); ++i) { // at a wall now, before, both, or neither
                 bed.touches_wall[i] = i % 2;
                 bed.touched_wall_before[i] = i / 2 % 2;
@@ -88,27 +86,30 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                   expected.mass_moment[k] += g.mass * before.position[k];
                   const double gained = g.velocity[k] - before.velocity[k];
                   const double spun = g.radius * (g.spin[k] - before.spin[k]);
-                  const float* const then = bed.last_step[i].values + k;
-                  const double v = mean.velocity[k] + step * then[Last::velocity_rate] / 12.0;
-                  const double s = g.radius * mean.spin[k] + step * then[Last::surface_spin_rate] / 12.0;
+                  const LastStepRow& then = bed.last_step[i];
+                  const double v = mean.velocity[k] + step * then.velocity_rate[k] / 12.0;
+                  const double s = g.radius * mean.spin[k] + step * then.surface_spin_rate[k] / 12.0;
                   Losses &lost = expected.lost, &early = expected.early;
                   const auto work = [&](double force, double then_force, double at, double kick, double& all,
                                         double& first_half) {
                     all -= step * (force * at - then_force * kick / 12.0);
                     first_half -= step * (0.5 * force * (at - 0.25 * kick) - then_force * kick / 12.0);
                   };
-                  work(bed.loss[i].damping[k], then[Last::damping], v, gained, lost.normal_granule,
+                  work(bed.loss[i].damping[k], then.loss.damping[k], v, gained, lost.normal_granule,
                        early.normal_granule);
                   work(bed.damping_wall[i].force[k], bed.damping_wall_before[i].force[k], v, gained, lost.normal_wall,
                        early.normal_wall);
-                  work(bed.loss[i].friction[k], then[Last::friction], v, gained, lost.friction_granule,
+                  work(bed.loss[i].friction[k], then.loss.friction[k], v, gained, lost.friction_granule,
                        early.friction_granule);
                   const ForceRow &wall = bed.friction_wall[i], &wall_before = bed.friction_wall_before[i];
                   work(wall.force[k], wall_before.force[k], v, gained, lost.friction_wall, early.friction_wall);
                   work(wall.turn[k], wall_before.turn[k], s, spun, lost.friction_wall, early.friction_wall);
-                  // What of the turn is not the walls' is the other granules'.
-                  work(bed.force[i].turn[k] - wall.turn[k], then[Last::turn], s, spun, lost.friction_granule,
-                       early.friction_granule);
+                  // What of the turn is not the walls' is the other granules', and was in the step before, which the
+                  // change of spin in it tells.
+                  if (rotates)
+                    work(bed.force[i].turn[k] - wall.turn[k],
+                         0.4 * g.mass * then.surface_spin_rate[k] - wall_before.turn[k], s, spun, lost.friction_granule,
+                         early.friction_granule);
                 }
                 double square = 0.0;
                 for (std::size_t k = 0; k < 3; ++k) square += g.velocity[k] * g.velocity[k];
@@ -164,16 +165,14 @@ TEST_CASE("motion kernels: every instruction set and set of effects against the 
                   for (std::size_t k = 0; k < 3; ++k) {
                     const double gained = moved[i].velocity[k] - before.velocity[k];
                     const double spun = before.radius * (moved[i].spin[k] - before.spin[k]);
-                    const float* const then = bed.last_step[i].values + k;
+                    const LastStepRow& then = bed.last_step[i];
                     const auto remembered = [](float value, double wanted) {
                       CHECK(std::abs(value - wanted) <= 1.0e-7 * std::abs(wanted) + 1.0e-9);
                     };
-                    remembered(then[Last::velocity_rate], gained / step);
-                    if (rotates) remembered(then[Last::surface_spin_rate], spun / step);
-                    remembered(then[Last::damping], untouched.loss[i].damping[k]);
-                    remembered(then[Last::friction], untouched.loss[i].friction[k]);
-                    if (rotates)
-                      remembered(then[Last::turn], untouched.force[i].turn[k] - untouched.friction_wall[i].turn[k]);
+                    remembered(then.velocity_rate[k], gained / step);
+                    if (rotates) remembered(then.surface_spin_rate[k], spun / step);
+                    CHECK(then.loss.damping[k] == untouched.loss[i].damping[k]);
+                    CHECK(then.loss.friction[k] == untouched.loss[i].friction[k]);
                   }
                 if (counts) {
                   CHECK(bed.force[i].touching == 0.0);
