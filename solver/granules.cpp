@@ -115,10 +115,9 @@ void Granules::swap_permuted() {
 }
 
 void Granules::clear_forces(std::uint32_t first, std::uint32_t last) {
-  clear_rows(force, first, last);
   wall_loss.clear(first, last);
-  if (share_.size() > 0)
-    for (std::uint32_t i = first; i < last; ++i) force[i].friction_share = share_[i];
+  if (share_.size() == 0) return clear_rows(force, first, last);
+  for (std::uint32_t i = first; i < last; ++i) force[i] = {{0.0, 0.0, 0.0}, 0.0, {0.0, 0.0, 0.0}, share_[i]};
 }
 
 void Granules::set_ghosts() {

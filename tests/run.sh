@@ -117,6 +117,26 @@ fuzz() {
     -artifact_prefix="$found/" "$found/corpus" "tests/fuzz/${name%_fuzz}_corpus"
 }
 
+# All fuzz targets at once: each works on one processor.
+fuzz_all() {
+  local source name
+  local -A running
+  for source in tests/fuzz/*_fuzz.cpp; do
+    name=$(basename "$source" .cpp)
+    fuzz "$name" >"$logs/$name.out" 2>&1 &
+    running[$name]=$!
+  done
+  for name in "${!running[@]}"; do
+    check "$name" finished "${running[$name]}" "$logs/$name.out"
+  done
+}
+finished() {
+  local status=0
+  wait "$1" || status=$?
+  cat "$2"
+  return "$status"
+}
+
 [ $full -eq 1 ] && test_packages=("${full_test_packages[@]}")
 need packages install_packages "${test_packages[@]}"
 check layering bash tests/layering/check.sh
@@ -150,7 +170,5 @@ if [ $full -eq 1 ]; then
     build-thread-sanitize/tests/test_solver --test-case='the same bits*,cut between*'
 fi
 need build_fuzz build fuzz
-for source in tests/fuzz/*_fuzz.cpp; do
-  check "$(basename "$source" .cpp)" fuzz "$(basename "$source" .cpp)"
-done
+fuzz_all
 finish
