@@ -136,28 +136,65 @@ void look_along(const Wall& wall, const CellGrid& grid, int first_layer, int las
   }
 }
 
-/// Pairs that a coarse search may find from one of the cells.
-std::size_t pairs_from(const kernels::CellRows& rows, std::uint32_t cell) {
+/// Pairs that a coarse search may find from one granule of the cell.
+std::size_t pairs_from_one(const kernels::CellRows& rows, std::uint32_t cell) {
   const std::uint32_t before = rows.before(cell), after = rows.after(cell);
   std::size_t tests = rows.within ? rows.own[after] - rows.own[cell] : 0;
   for (int k = 0; k < rows.count; ++k) tests += rows.beside[k][after] - rows.beside[k][before];
-  return tests * (rows.own[cell + 1] - rows.own[cell]);
+  return tests;
 }
 
-/// A coarse search from the cells [first, last) of the row, as many at a time as need no more room than so many pairs,
-/// or one, whatever room that needs.
+/// And from all of them.
+std::size_t pairs_from(const kernels::CellRows& rows, std::uint32_t cell) {
+  return pairs_from_one(rows, cell) * (rows.own[cell + 1] - rows.own[cell]);
+}
+
+/// What one search is given room for, if a single granule needs no more.
+constexpr std::size_t most_pairs_at_once = 1U << 16;
+
+/// A coarse search from one crowded cell, some of its granules at a time: the room that all of them could need grows
+/// with the square of their number, however few pairs they make.
+void append_crowded(PairList& list, const kernels::CellRows& rows, std::uint32_t cell,
+                    const kernels::CoarseArguments& arguments, kernels::CoarseKernel* search) {
+  const std::size_t each = pairs_from_one(rows, cell);
+  const auto at_once = static_cast<std::uint32_t>(std::max<std::size_t>(1, most_pairs_at_once / each));
+  const std::uint32_t before = rows.before(cell), after = rows.after(cell), end = rows.own[cell + 1];
+  // Two cells that stand for all: the granules at work, and what comes after them.
+  std::uint32_t beside[kernels::most_rows_beside][3];
+  kernels::CellRows part = rows;
+  part.cells = 2;
+  part.first = 0;
+  part.last = 1;
+  for (int k = 0; k < rows.count; ++k) {
+    beside[k][0] = beside[k][1] = rows.beside[k][before];
+    beside[k][2] = rows.beside[k][after];
+    part.beside[k] = beside[k];
+  }
+  for (std::uint32_t first = rows.own[cell]; first < end;) {
+    const std::uint32_t last = std::min(first + at_once, end);
+    const std::uint32_t own[3] = {first, last, rows.own[after]};
+    part.own = own;
+    list.set_end(search(arguments, part, list.room_for((last - first) * each + kernels::list_padding)));
+    first = last;
+  }
+}
+
+/// A coarse search from the cells [first, last) of the row, as many at a time as need no more room than so many pairs.
 void append(PairList& list, kernels::CellRows rows, std::uint32_t first, std::uint32_t last,
             const kernels::CoarseArguments& arguments, kernels::CoarseKernel* search) {
-  constexpr std::size_t most_room = 1U << 16;
   for (rows.last = first; rows.last < last;) {
     rows.first = rows.last;
-    std::size_t room = kernels::list_padding + pairs_from(rows, rows.last++);
+    std::size_t room = pairs_from(rows, rows.last++);
+    if (room > most_pairs_at_once) {
+      append_crowded(list, rows, rows.first, arguments, search);
+      continue;
+    }
     for (; rows.last < last; ++rows.last) {
       const std::size_t more = pairs_from(rows, rows.last);
-      if (room + more > most_room) break;
+      if (room + more > most_pairs_at_once) break;
       room += more;
     }
-    list.set_end(search(arguments, rows, list.room_for(room)));
+    list.set_end(search(arguments, rows, list.room_for(room + kernels::list_padding)));
   }
 }
 

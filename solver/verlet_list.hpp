@@ -22,6 +22,8 @@ public:
   std::size_t count() const noexcept { return count_; }
   kernels::RowPair* data() noexcept { return pairs_.data(); }
   const kernels::RowPair* data() const noexcept { return pairs_.data(); }
+  /// How many there is memory for.
+  std::size_t room() const noexcept { return pairs_.size(); }
   /// Room for `more` pairs at the end; where they go.
   kernels::RowPair* room_for(std::size_t more);
   void set_end(const kernels::RowPair* end) noexcept { count_ = static_cast<std::size_t>(end - pairs_.data()); }

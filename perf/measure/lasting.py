@@ -60,6 +60,8 @@ def checkpoint():
         # A closing speed far above what shaking makes: granules placed at random are thrown about at first.
         cases.append((f"bed of {count:,}", sizes.memory_scene(count), {"time.duration": steps * step},
                       0.2 if quick else max(1.0, 4.0e-6 * count)))
+    name, scene, settings, interval = cases[-1]
+    cases.append((f"{name}, energy ledger on", scene, {**settings, "output.energy": "true"}, interval))
     rows = []
     for name, scene, settings, interval in cases:
         taken = in_turn({"with": lambda: with_checkpoints(scene, settings, interval),

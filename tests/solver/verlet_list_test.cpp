@@ -130,3 +130,34 @@ TEST_CASE("Verlet list: the grid finds every pair within reach, no other, and th
         CHECK(wrong_class <= (fused ? 0U : 2U));
       }
 }
+
+TEST_CASE("Verlet list: a crowded cell takes room for the pairs found, not for all that are tested") {
+  const std::uint32_t count = 3000;
+  const double small = 0.05e-3, narrow_skin = 0.02e-3;
+  const Vector3 size{2.5e-3, 2.5e-3, 2.5e-3};
+  Granules granules(count, {});
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> place(0.0, 2.5e-3);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    granules.position[i] = {place(engine), place(engine), place(engine), i == 0 ? radius : small};
+    granules.id[i] = i;
+    granules.population[i] = 0;
+  }
+  granules.set_ghosts();
+  VerletList::Search search = VerletList::Search::with(kernels::InstructionSet::generic, false, radius);
+  search.skin = narrow_skin;
+  search.cell_length = 2.0 * radius + narrow_skin;
+  VerletList list;
+  list.build(granules, size, {}, search, Team(1));
+  REQUIRE(list.grid().shape().total() == 1);
+  std::size_t wanted = 0;
+  for (std::uint32_t i = 0; i < count; ++i)
+    for (std::uint32_t j = i + 1; j < count; ++j) {
+      const kernels::PositionRow &a = granules.position[i], &b = granules.position[j];
+      const double reach = a.radius + b.radius + narrow_skin;
+      if (square(a, b) < reach * reach) ++wanted;
+    }
+  CHECK(wanted > 2000);
+  CHECK(list.candidates() == wanted);
+  CHECK(list.segments().front().inner.room() < 150'000); // of 4.5 million tested
+}
