@@ -25,7 +25,7 @@ double price_of_memory(std::size_t granules) {
 }
 
 double price_of_the_ledger(std::size_t granules) {
-  return 1.6 + 0.3 * (price_of_memory(granules) - 1.0);
+  return 1.5 + 0.1 * (price_of_memory(granules) - 1.0);
 }
 
 /// Time of a granule's step against AVX-512.

@@ -106,8 +106,8 @@ void choose_list(Plan& plan) {
 std::size_t estimate_memory(const Plan& plan) {
   double bytes_per_granule = 32.0 + 64.0 + 64.0 + 8.0 + 36.0 + 16.0;
   if (plan.granules == 0) return 0;
-  constexpr double forces_by_kind = 2.0 * 32.0 + 2.0 * 64.0, velocities = 64.0;
-  if (plan.scene.output.energy) bytes_per_granule += 2.0 * (forces_by_kind + velocities);
+  constexpr double losses = 32.0, last_step = 64.0, losses_at_walls = 32.0 + 64.0 + 1.0, velocities = 64.0;
+  if (plan.scene.output.energy) bytes_per_granule += losses + 2.0 * (last_step + losses_at_walls);
   if (plan.scene.time.integrator == Integrator::verlet) bytes_per_granule += 2.0 * velocities;
   const double bytes_per_candidate = plan.scene.contact.friction == FrictionLaw::spring ? 8.0 + 36.0 : 8.0;
   // Half of the neighbours whose centres are within a diameter and the skin, at this solid fraction.
