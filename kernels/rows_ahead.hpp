@@ -53,7 +53,7 @@ private:
   GranuleArrays granules_;
   std::uint32_t next_, last_;
   IndexRange then_;
-  bool to_be_moved_ = false; ///< the rows asked for are those of `then_`
+  bool to_be_moved_ = false; ///< those asked for are of the next block, which is moved once its pairs are done
   static constexpr std::uint32_t one = 256;
   std::uint32_t rate_ = 0, due_ = 0; ///< rows per call, and not yet asked for; a row counts `one`
 };

@@ -35,7 +35,6 @@ struct Avx512 {
   GRANDAMP_INLINE Row row_load(const double* p) { return _mm256_load_pd(p); }
   GRANDAMP_INLINE void row_store(double* p, Row r) { _mm256_store_pd(p, r); }
   GRANDAMP_INLINE Row row_of_floats(const float* p) { return _mm256_cvtps_pd(_mm_loadu_ps(p)); }
-  GRANDAMP_INLINE void row_to_floats(float* p, Row r) { _mm_storeu_ps(p, _mm256_cvtpd_ps(r)); }
   GRANDAMP_INLINE Row row_broadcast(double x) { return _mm256_set1_pd(x); }
   GRANDAMP_INLINE Row row_set(double a, double b, double c, double d) { return _mm256_setr_pd(a, b, c, d); }
   GRANDAMP_INLINE Row row_fma(Row a, Row b, Row c) { return xsimd::fma(a, b, c); }

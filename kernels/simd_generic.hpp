@@ -44,9 +44,6 @@ struct Generic {
   GRANDAMP_INLINE Row row_load(const double* p) { return load(p); }
   GRANDAMP_INLINE void row_store(double* p, Row r) { store(p, r); }
   GRANDAMP_INLINE Row row_of_floats(const float* p) { return Row{p[0], p[1], p[2], p[3]}; }
-  GRANDAMP_INLINE void row_to_floats(float* p, Row r) {
-    for (int k = 0; k < 4; ++k) p[k] = static_cast<float>(r[k]);
-  }
   GRANDAMP_INLINE Row row_broadcast(double x) { return broadcast(x); }
   GRANDAMP_INLINE Row row_set(double a, double b, double c, double d) { return Row{a, b, c, d}; }
   GRANDAMP_INLINE Row row_fma(Row a, Row b, Row c) { return a * b + c; }

@@ -102,7 +102,7 @@ void choose_list(Plan& plan) {
 }
 
 /// Rows of position, motion and force, ids and scratch of the sort, and the candidates of a list; some eight arrays of
-/// them on whole large pages (solver/row_array.hpp) where they are large.
+/// them, and seven of the ledger, on whole large pages (solver/row_array.hpp) where they are large.
 std::size_t estimate_memory(const Plan& plan) {
   double bytes_per_granule = 32.0 + 64.0 + 64.0 + 8.0 + 36.0 + 16.0;
   if (plan.granules == 0) return 0;
@@ -115,11 +115,12 @@ std::size_t estimate_memory(const Plan& plan) {
   const double candidates =
       std::min(0.5 * static_cast<double>(plan.granules), 4.0 * plan.damper.fill_fraction * reach * reach * reach);
   constexpr double half_a_page = 1U << 20;
+  const double arrays = plan.scene.output.energy ? 15.0 : 8.0;
   constexpr std::size_t large_arrays = (1U << 20) / sizeof(kernels::MotionRow);
   const double cells = static_cast<double>(plan.grid[0]) * plan.grid[1] * plan.grid[2];
   return static_cast<std::size_t>(static_cast<double>(plan.granules) *
                                       (bytes_per_granule + bytes_per_candidate * candidates) +
-                                  8.0 * cells + (plan.granules >= large_arrays ? 8.0 * half_a_page : 0.0));
+                                  8.0 * cells + (plan.granules >= large_arrays ? arrays * half_a_page : 0.0));
 }
 
 void note(Plan& plan, std::string key, std::string message) {

@@ -234,10 +234,11 @@ void Stepper::take_half_step_back() {
       before.velocity[k] -= gained;
       before.surface_spin[k] -= spun;
       if (granules_.last_step.size() == 0) continue;
+      // There is no step before: nothing was lost in it, and nothing turned the granules.
       kernels::LastStepRow& last = granules_.last_step[i];
-      last.loss = {}; // there is no step before
+      last.loss = {};
       last.velocity_rate[k] = static_cast<float>(gained / (0.5 * time_step_));
-      last.surface_spin_rate[k] = static_cast<float>(spun / (0.5 * time_step_));
+      last.surface_spin_rate[k] = 0.0F;
     }
   granules_.motion = std::move(motion);
   granules_.predicted = std::move(predicted);
