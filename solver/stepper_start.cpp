@@ -226,20 +226,19 @@ void Stepper::take_half_step_back() {
   sweep(kernels, kick, {});
   springs_ = springs;
   granules_.position = std::move(position);
-  for (std::uint32_t i = 0; i < count; ++i)
+  for (std::uint32_t i = 0; i < count; ++i) {
+    // There is no step before: nothing was lost in it, and nothing turned the granules.
+    if (granules_.last_step.size() > 0) granules_.last_step[i] = {};
     for (std::size_t k = 0; k < 3; ++k) {
       MotionRow &before = motion[i], &after = granules_.motion[i];
       const double gained = 0.5 * (after.velocity[k] - before.velocity[k]) + frame_change[k];
       const double spun = 0.5 * (after.surface_spin[k] - before.surface_spin[k]);
       before.velocity[k] -= gained;
       before.surface_spin[k] -= spun;
-      if (granules_.last_step.size() == 0) continue;
-      // There is no step before: nothing was lost in it, and nothing turned the granules.
-      kernels::LastStepRow& last = granules_.last_step[i];
-      last.loss = {};
-      last.velocity_rate[k] = static_cast<float>(gained / (0.5 * time_step_));
-      last.surface_spin_rate[k] = 0.0F;
+      if (granules_.last_step.size() > 0)
+        granules_.last_step[i].velocity_rate[k] = static_cast<float>(gained / (0.5 * time_step_));
     }
+  }
   granules_.motion = std::move(motion);
   granules_.predicted = std::move(predicted);
   granules_.wall_loss.clear(0, count);
