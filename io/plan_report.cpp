@@ -83,8 +83,11 @@ std::string search_line(const Plan& plan) {
   if (policy != ListPolicy::none) {
     text += fmt::format(", skin {:.4g} mm{}", 1e3 * plan.skin, plan.skin_tuned ? " (tuned as the run goes)" : "");
   }
-  return text + fmt::format(", cells of {:.4g} mm, grid {} x {} x {}", 1e3 * plan.cell, plan.grid[0], plan.grid[1],
-                            plan.grid[2]);
+  text +=
+      fmt::format(", cells of {:.4g} mm, grid {} x {} x {}", 1e3 * plan.cell, plan.grid[0], plan.grid[1], plan.grid[2]);
+  if (plan.small_radius < plan.largest_radius)
+    text += fmt::format(", granules beyond {:.4g} mm looked for one by one", 1e3 * plan.small_radius);
+  return text;
 }
 
 Json finite_or_null(double value) {

@@ -56,9 +56,7 @@ void CellGrid::sort(Granules& granules, const GridShape& shape, const Team& team
   counts_.resize(pieces);
 
   const auto cell_along = [&](const kernels::PositionRow& row, std::size_t k) {
-    const double x = (&row.x)[shape_.axis[k]] * shape_.inverse_length[k];
-    const int last = shape_.cells[k] - 1;
-    return x > 0.0 ? (x < last ? static_cast<int>(x) : last) : 0; // whatever x is, a cell: guards come later
+    return shape_.cell_along((&row.x)[shape_.axis[k]], k); // whatever it is, a cell: guards come later
   };
   team.each(pieces, [&](std::size_t piece) {
     std::vector<std::uint32_t>& counts = counts_[piece];

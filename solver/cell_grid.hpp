@@ -17,6 +17,12 @@ struct GridShape {
   std::array<int, 3> cells{1, 1, 1}; ///< along those axes
   std::array<double, 3> inverse_length{0.0, 0.0, 0.0};
 
+  /// The cell of a coordinate (m) along axis[k]; one at the edge for what is outside, or not finite.
+  int cell_along(double coordinate, std::size_t k) const {
+    const double x = coordinate * inverse_length[k];
+    const int last = cells[k] - 1;
+    return x > 0.0 ? (x < last ? static_cast<int>(x) : last) : 0;
+  }
   std::size_t total() const {
     return static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) * static_cast<std::size_t>(cells[2]);
   }

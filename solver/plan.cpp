@@ -5,8 +5,10 @@
 #include "solver/measures.hpp"
 #include "solver/scene_check.hpp"
 #include "solver/several_modes.hpp"
+#include "solver/size_cut.hpp"
 #include "solver/time_step.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace grandamp {
@@ -81,23 +83,28 @@ void choose_effects(Plan& plan, const ContactTable& contacts) {
   effect("mixed", granules && scene.time.precision == Precision::mixed);
 }
 
-void choose_list(Plan& plan) {
+void choose_list(Plan& plan, const std::vector<RadiusCount>& sizes) {
   const VerletControl& verlet = plan.scene.verlet;
-  const double diameter = 2.0 * plan.largest_radius;
+  const double diameter = 2.0 * plan.largest_radius, mean_diameter = 2.0 * plan.mean_radius;
   const bool lists = verlet.policy != ListPolicy::none && verlet.policy != ListPolicy::all_pairs;
   plan.skin_tuned = lists && !verlet.skin && verlet.policy != ListPolicy::fixed;
   if (verlet.skin)
     plan.skin = *verlet.skin * diameter;
   else if (lists) {
-    // Measured: 0.15 to 0.2 d is best for dense scenes, 0.3 to 0.4 d for dilute ones.
+    // Measured: 0.15 to 0.2 d is best for dense scenes, 0.3 to 0.4 d for dilute ones. Of unlike granules what counts is
+    // how many candidates there are of each, and most of them are of the size of most.
     const double dense = std::clamp(plan.damper.fill_fraction / 0.3, 0.0, 1.0);
-    plan.skin = (0.35 - 0.15 * dense) * diameter;
+    plan.skin = (0.35 - 0.15 * dense) * mean_diameter;
     if (verlet.cell) plan.skin = std::min(plan.skin, (*verlet.cell - 1.0) * diameter);
   }
   if (!lists) plan.skin = 0.0; // looked for anew at every step
-  plan.cell = verlet.cell ? *verlet.cell * diameter : diameter + plan.skin;
+  const Vector3 box = bounding_box(plan.scene.enclosure);
+  // Cells of a length that is asked for are for all granules.
+  plan.small_radius =
+      verlet.cell ? plan.largest_radius : largest_in_cells(sizes, plan.skin, *std::max_element(box.begin(), box.end()));
+  plan.cell = verlet.cell ? *verlet.cell * diameter : 2.0 * plan.small_radius + plan.skin;
   if (plan.granules == 0) return;
-  const GridShape shape = make_grid_shape(bounding_box(plan.scene.enclosure), plan.cell, plan.granules);
+  const GridShape shape = make_grid_shape(box, plan.cell, plan.granules);
   for (std::size_t k = 0; k < 3; ++k) plan.grid[static_cast<std::size_t>(shape.axis[k])] = shape.cells[k];
 }
 
@@ -110,8 +117,8 @@ std::size_t estimate_memory(const Plan& plan) {
   if (plan.scene.output.energy) bytes_per_granule += losses + 2.0 * (last_step + losses_at_walls);
   if (plan.scene.time.integrator == Integrator::verlet) bytes_per_granule += 2.0 * velocities;
   const double bytes_per_candidate = plan.scene.contact.friction == FrictionLaw::spring ? 8.0 + 36.0 : 8.0;
-  // Half of the neighbours whose centres are within a diameter and the skin, at this solid fraction.
-  const double reach = 1.0 + 0.5 * plan.skin / plan.largest_radius;
+  // Half of the neighbours whose centres are within a mean diameter and the skin, at this solid fraction.
+  const double reach = 1.0 + 0.5 * plan.skin / plan.mean_radius;
   const double candidates =
       std::min(0.5 * static_cast<double>(plan.granules), 4.0 * plan.damper.fill_fraction * reach * reach * reach);
   constexpr double half_a_page = 1U << 20;
@@ -178,8 +185,10 @@ Plan make_plan(const Scene& scene) {
     excitation.sweep_duration = excitation.period.value_or(scene.time.duration);
   plan.granules = granule_count(scene);
   const RadiusRange radii = radius_range(scene);
+  const std::vector<RadiusCount> sizes = radius_counts(scene);
   plan.smallest_radius = radii.smallest;
   plan.largest_radius = radii.largest;
+  plan.mean_radius = mean_radius(sizes);
   plan.damper = damper_numbers(scene);
 
   const TimeStep step = choose_time_step(scene, contacts);
@@ -195,7 +204,7 @@ Plan make_plan(const Scene& scene) {
   if (step.choice) plan.scene.time.integrator = step.choice->integrator;
 
   plan.window = scene.output.window.value_or(std::array<double, 2>{0.5 * scene.time.duration, scene.time.duration});
-  choose_list(plan);
+  choose_list(plan, sizes);
   choose_effects(plan, contacts);
   plan.memory = estimate_memory(plan);
   add_notes(plan);

@@ -30,6 +30,8 @@ struct Plan {
   std::size_t granules = 0;
   double smallest_radius = 0.0;
   double largest_radius = 0.0;
+  double mean_radius = 0.0;
+  double small_radius = 0.0; ///< up to which granules are in cells of their size (solver/size_cut.hpp)
   double impact_speed = 0.0; ///< closing speed that T_c rests on, m/s
   bool impact_speed_estimated = true;
   double contact_duration = 0.0;         ///< T_c of the stiffest, lightest contact, s; 0 without granules

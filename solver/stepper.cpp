@@ -379,7 +379,7 @@ void Stepper::rebuild() {
   std::vector<LoadedSpring> springs;
   if (remembers() && age_.built) springs = springs_.loaded(list_, granules_, kick_number_ - 1, team_);
   search_.skin = skin_;
-  search_.cell_length = std::max(plan_.cell, 2.0 * search_.largest_radius + skin_);
+  search_.cell_length = std::max(plan_.cell, 2.0 * search_.small_radius + skin_);
   if (plan_.scene.verlet.policy == ListPolicy::all_pairs)
     timed(profile_, Phase::build, 0, [&] { list_.build_from_all_pairs(granules_, walls_, search_); });
   else

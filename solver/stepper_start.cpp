@@ -130,10 +130,11 @@ Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa,
   skin_ = policy == ListPolicy::none || policy == ListPolicy::all_pairs ? 0.0 : plan_.skin;
   tuner_.active = plan_.skin_tuned && skin_ > 0.0 && policy != ListPolicy::fixed;
   tuner_.skin = skin_;
-  tuner_.least = 0.04 * 2.0 * plan_.largest_radius;
-  tuner_.largest = 0.8 * 2.0 * plan_.largest_radius;
+  tuner_.least = 0.04 * 2.0 * plan_.mean_radius;
+  tuner_.largest = 0.8 * 2.0 * plan_.mean_radius;
   if (plan_.scene.verlet.cell) tuner_.largest = std::min(tuner_.largest, plan_.cell - 2.0 * plan_.largest_radius);
   search_ = VerletList::Search::with(isa_, contact_effects_.variety == Variety::alike, plan_.largest_radius);
+  search_.small_radius = plan_.small_radius;
 
   touch_ahead_ = plan_.granules * (sizeof(PositionRow) + sizeof(MotionRow) + sizeof(kernels::ForceRow)) > 1U << 20;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 namespace grandamp {
 
@@ -22,9 +24,10 @@ template <class Real> struct Coordinates {
   Real *x, *y, *z, *radius;
   double scale;
 
-  explicit Coordinates(Granules& granules, double unit) : scale(1.0 / unit) {
+  /// behind: bytes per granule that others use before these.
+  explicit Coordinates(Granules& granules, double unit, std::size_t behind = 0) : scale(1.0 / unit) {
     const std::size_t rows = granules.force.size();
-    x = reinterpret_cast<Real*>(granules.force.data());
+    x = reinterpret_cast<Real*>(reinterpret_cast<char*>(granules.force.data()) + behind * rows);
     y = x + rows;
     z = y + rows;
     radius = z + rows; // vectors may read past it: the upper half of the buffer is free
@@ -34,13 +37,16 @@ template <class Real> struct Coordinates {
     return {x, y, z, radius, static_cast<Real>(reach * scale)};
   }
 
-  void fill(const Granules& granules, std::uint32_t first, std::uint32_t last) const {
+  /// Granules beyond `largest` go where no other finds them, nor they another.
+  void fill(const Granules& granules, std::uint32_t first, std::uint32_t last,
+            double largest = std::numeric_limits<double>::infinity()) const {
     for (std::uint32_t i = first; i < last; ++i) {
       const kernels::PositionRow& row = granules.position[i];
       x[i] = static_cast<Real>(row.x * scale);
       y[i] = static_cast<Real>(row.y * scale);
       z[i] = static_cast<Real>(row.z * scale);
       radius[i] = static_cast<Real>(row.radius * scale);
+      if (row.radius > largest) x[i] = std::numeric_limits<Real>::quiet_NaN();
     }
   }
 };
@@ -114,25 +120,35 @@ void list_walls(Segment& segment, const Granules& granules, const std::vector<Wa
   segment.touching_wall.resize(kernels::contact_scratch);
 }
 
+/// How many cells along the grid's axis k a length takes up, where granules stand anywhere in a cell.
+int cells_for(double length, const GridShape& shape, std::size_t k) {
+  return static_cast<int>(std::min(std::ceil(length * shape.inverse_length[k]), static_cast<double>(shape.cells[k])));
+}
+
 /// Calls look(first, last) for the rows in layers [first_layer, last_layer) that can be near the wall: at a plane those
-/// of the cells along it, which are longer than a granule's diameter and the skin.
+/// of the cells along it, as many of them as a granule that is `near` the wall can be away from it.
 template <class Look>
-void look_along(const Wall& wall, const CellGrid& grid, int first_layer, int last_layer, const Look& look) {
+void look_along(const Wall& wall, const CellGrid& grid, double near, int first_layer, int last_layer,
+                const Look& look) {
   const GridShape& shape = grid.shape();
   std::size_t across = 0;
   while (across < 3 && wall.surface.normal[shape.axis[across]] == 0.0) ++across;
   if (wall.side || across == 3) return look(grid.layer_start(first_layer), grid.layer_start(last_layer));
-  const int edge = wall.surface.normal[shape.axis[across]] > 0.0 ? shape.cells[across] - 1 : 0;
-  const auto row = [&](int first, int last, int middle, int slow) {
-    look(grid.cell_start(first, middle, slow), grid.start()[grid.index(last, middle, slow) + 1]);
+  const bool at_end = wall.surface.normal[shape.axis[across]] > 0.0;
+  const int deep = std::max(1, cells_for(near, shape, across));
+  const int from = at_end ? shape.cells[across] - deep : 0, to = at_end ? shape.cells[across] - 1 : deep - 1;
+  const int end_of_row = shape.cells[0] - 1;
+  // Cells of rows that follow one another.
+  const auto rows = [&](int first, int first_middle, int last, int last_middle, int slow) {
+    look(grid.cell_start(first, first_middle, slow), grid.start()[grid.index(last, last_middle, slow) + 1]);
   };
   for (int slow = first_layer; slow < last_layer; ++slow) {
     if (across == 2) {
-      if (slow == edge) look(grid.layer_start(slow), grid.layer_start(slow + 1));
+      if (from <= slow && slow <= to) look(grid.layer_start(slow), grid.layer_start(slow + 1));
     } else if (across == 1)
-      row(0, shape.cells[0] - 1, edge, slow);
+      rows(0, from, end_of_row, to, slow);
     else
-      for (int middle = 0; middle < shape.cells[1]; ++middle) row(edge, edge, middle, slow);
+      for (int middle = 0; middle < shape.cells[1]; ++middle) rows(from, middle, to, middle, slow);
   }
 }
 
@@ -213,6 +229,11 @@ RowPair* PairList::room_for(std::size_t more) {
   return pairs_.data() + count_;
 }
 
+void PairList::append(const RowPair& pair) {
+  *room_for(1) = pair;
+  ++count_;
+}
+
 std::size_t PairList::pad(std::uint32_t ghost) {
   std::size_t added = 0;
   RowPair* end = room_for(kernels::list_padding);
@@ -227,18 +248,22 @@ std::size_t VerletList::candidates() const {
   return sum;
 }
 
-void VerletList::cut_into_segments(std::uint32_t granules) {
+void VerletList::cut_into_segments(std::uint32_t granules, const Search& search) {
   const int layers = grid_.shape().cells[2];
+  // No pair reaches further than from a segment into the next.
+  const int reached = search.two_levels() ? cells_for(2.0 * search.largest_radius + search.skin, grid_.shape(), 2) : 1;
+  const int least = 2 * std::max(1, reached);
   // A power of two: as many for each of two, four or eight threads.
   std::uint32_t wanted = 1;
   if (granules >= single_segment)
-    for (int segments = 2; segments <= std::min(most_segments, layers / least_layers); segments *= 2) wanted *= 2;
+    for (int segments = 2; segments <= std::min(most_segments, layers / std::max(least, least_layers)); segments *= 2)
+      wanted *= 2;
   segment_layers_.assign(1, 0);
   for (std::uint32_t s = 1; s < wanted; ++s) {
     const auto share = static_cast<std::uint32_t>(static_cast<std::uint64_t>(granules) * s / wanted);
-    int layer = segment_layers_.back() + 2;
-    while (layer < layers - 2 && grid_.layer_start(layer) < share) ++layer;
-    if (layer > layers - 2) break;
+    int layer = segment_layers_.back() + least;
+    while (layer < layers - least && grid_.layer_start(layer) < share) ++layer;
+    if (layer > layers - least) break;
     segment_layers_.push_back(layer);
   }
   segment_layers_.push_back(layers);
@@ -259,9 +284,22 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
   block.first = segment.first;
   block.front = segment.first;
   std::size_t first_inner = 0, first_boundary = 0;
+  auto large = segment.large.begin();
 
   const auto finish_block = [&](std::uint32_t last) {
     block.last = last;
+    for (; large != segment.large.end() && large->first() < last; ++large) {
+      const std::uint32_t row = large->second();
+      if (row < segment.last) {
+        segment.inner.append(*large);
+        block.front = std::max(block.front, row + 1);
+      } else {
+        segment.boundary.append(*large);
+        block.beyond = block.beyond.last > 0 ? kernels::IndexRange{std::min(block.beyond.first, row),
+                                                                   std::max(block.beyond.last, row + 1)}
+                                             : kernels::IndexRange{row, row + 1};
+      }
+    }
     block.inner = classed(segment.inner, first_inner, search, granules, segment);
     block.boundary = classed(segment.boundary, first_boundary, search, granules, segment);
     first_inner = segment.inner.count();
@@ -311,17 +349,29 @@ void VerletList::build(Granules& granules, const Vector3& size, const std::vecto
 
 void VerletList::search_all(Granules& granules, const Vector3& size, const std::vector<Wall>& walls,
                             const Search& search, const Team& team) {
-  cut_into_segments(granules.count());
+  cut_into_segments(granules.count(), search);
   const Coordinates<float> coordinates(granules, search.cell_length);
   const kernels::CoarseArguments arguments = coordinates.arguments(reach_of(search) + coarse_margin(search, size));
+  const Coordinates<double> exact(granules, 1.0, 4 * sizeof(float));
+  const LargeSearch large{search.kernel, exact.arguments(search.skin), search.small_radius, search.largest_radius,
+                          search.skin};
+  large_.clear();
+  if (search.two_levels()) large_.find(granules, search.small_radius);
 
+  const auto first_row = [&](std::size_t s) { return grid_.layer_start(segment_layers_[s]); };
   team.each(segments_.size(), [&](std::size_t s) {
-    coordinates.fill(granules, grid_.layer_start(segment_layers_[s]), grid_.layer_start(segment_layers_[s + 1]));
+    coordinates.fill(granules, first_row(s), first_row(s + 1), search.small_radius);
+    if (large_.any()) exact.fill(granules, first_row(s), first_row(s + 1));
   });
   team.each(segments_.size(), [&](std::size_t s) {
+    segments_[s].large.clear();
+    if (large_.any())
+      large_.list_pairs(large, grid_, granules, {first_row(s), first_row(s + 1)},
+                        first_row(std::min(s + 2, segments_.size())), segments_[s].large);
     search_segment(segments_[s], segment_layers_[s], segment_layers_[s + 1], arguments, search, granules);
     list_walls(segments_[s], granules, walls, search.skin, [&](const Wall& wall, const auto& look) {
-      look_along(wall, grid_, segment_layers_[s], segment_layers_[s + 1], look);
+      look_along(wall, grid_, search.largest_radius + 0.5 * search.skin, segment_layers_[s], segment_layers_[s + 1],
+                 look);
     });
   });
   team.each(segments_.size(), [&](std::size_t s) { granules.clear_forces(segments_[s].first, segments_[s].last); });

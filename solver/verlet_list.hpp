@@ -6,6 +6,7 @@
 #include "kernels/arguments.hpp"
 #include "kernels/dispatch.hpp"
 #include "solver/cell_grid.hpp"
+#include "solver/large_granules.hpp"
 #include "solver/profile.hpp"
 #include "solver/walls.hpp"
 
@@ -27,6 +28,7 @@ public:
   /// Room for `more` pairs at the end; where they go.
   kernels::RowPair* room_for(std::size_t more);
   void set_end(const kernels::RowPair* end) noexcept { count_ = static_cast<std::size_t>(end - pairs_.data()); }
+  void append(const kernels::RowPair& pair);
   /// Fills up to a multiple of list_padding; returns how many pairs were added.
   std::size_t pad(std::uint32_t ghost);
 
@@ -71,6 +73,7 @@ struct Segment {
   std::size_t candidates = 0;             ///< without padding
   std::vector<kernels::RowPair> touching; ///< scratch of the sweep
   PairList far_pairs;                     ///< scratch of the build
+  std::vector<kernels::RowPair> large;    ///< scratch of the build: pairs with a large granule, sorted
   std::vector<std::uint32_t> touching_wall;
 };
 
@@ -82,8 +85,12 @@ public:
     kernels::SplitKernel* split = nullptr;
     bool alike = true;
     double largest_radius = 0.0; ///< m
-    double skin = 0.0;           ///< m
-    double cell_length = 0.0;    ///< at least 2 largest_radius + skin, m
+    /// Granules up to this radius are in cells of their size; larger ones are looked for one by one (not if alike), m.
+    double small_radius = 0.0;
+    double skin = 0.0;        ///< m
+    double cell_length = 0.0; ///< at least 2 small_radius + skin, m
+
+    bool two_levels() const noexcept { return small_radius < largest_radius; }
 
     /// With the kernels of an instruction set; skin and cells are still to be said.
     static Search with(kernels::InstructionSet set, bool alike, double largest_radius) {
@@ -91,6 +98,7 @@ public:
               kernels::coarse_kernel_for(set, alike),
               kernels::split_kernel_for(set, alike),
               alike,
+              largest_radius,
               largest_radius,
               0.0,
               0.0};
@@ -109,13 +117,14 @@ public:
   const CellGrid& grid() const noexcept { return grid_; }
 
 private:
-  void cut_into_segments(std::uint32_t granules);
+  void cut_into_segments(std::uint32_t granules, const Search& search);
   void search_all(Granules& granules, const Vector3& size, const std::vector<Wall>& walls, const Search& search,
                   const Team& team);
   void search_segment(Segment& segment, int first_layer, int last_layer, const kernels::CoarseArguments& arguments,
                       const Search& search, const Granules& granules);
 
   CellGrid grid_;
+  LargeGranules large_;
   std::vector<Segment> segments_;
   std::vector<int> segment_layers_; ///< first layer of each segment, and the end
 };

@@ -135,6 +135,32 @@ TEST_CASE("cut between two lists, on one thread or two: the same bits") {
   }
 }
 
+// Large granules are looked for one by one, and reach through several layers of cells.
+TEST_CASE("the same bits on 1, 2 and 4 threads, and from a state, with one in 300 ten times as wide") {
+  Scene scene = cloud(21000, {0.06, 0.06, 0.3});
+  scene.populations[0] = balls(21000, 0.4e-3);
+  scene.populations.push_back(balls(70, 4.0e-3));
+  scene.time.step = 1.0e-6;
+  scene.time.duration = 150.0e-6;
+  scene.verlet.skin = 0.01;
+  const Outcome alone = run(scene, 1, "");
+  CHECK(alone.builds > 2);
+  CHECK(alone.segments > 2);
+  CHECK(alone.sample.contacts > 20);
+  for (const int threads : {2, 4}) check_same(alone, run(scene, threads, ""));
+  scene.verlet.cell = 1.1; // one level: the same pairs in another order
+  const Outcome one_level = run(scene, 1, "");
+  CHECK(one_level.sample.contacts == alone.sample.contacts);
+  CHECK(one_level.sample.stored.kinetic == doctest::Approx(alone.sample.stored.kinetic).epsilon(1e-9));
+  scene.verlet.cell.reset();
+  RunOptions options;
+  options.threads = 1;
+  Simulation first(scene, options);
+  while (first.verlet().builds < 2) first.step();
+  Simulation second(scene, first.state(), options);
+  check_same(alone, finish(second));
+}
+
 TEST_CASE("the same bits on 1 and 2 threads with two sizes and the verlet integrator") {
   Scene scene = cloud(16000, tall);
   scene.populations.push_back(balls(6000, 0.8e-3));
