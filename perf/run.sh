@@ -4,6 +4,7 @@
 #   perf/run.sh scenes         S1 to S5, this program alone
 #   perf/run.sh peers          S1 to S5, in turn with LAMMPS and LIGGGHTS
 #   perf/run.sh sizes          100 to 10,000,000 granules: time and memory
+#   perf/run.sh radii          granules of two sizes, 1 : 1 to 1 : 20
 #   perf/run.sh threads        1, 2, ... threads
 #   perf/run.sh paper_table4   the paper's contact searches, Table 4 and Fig. 13
 #   perf/run.sh paper_fig14    intervals between lists, Fig. 14
@@ -17,11 +18,11 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source io/packages.sh
-names=(kernels scenes peers sizes threads paper_table4 paper_fig14 effects checkpoint long_run accuracy sweep)
+names=(kernels scenes peers sizes radii threads paper_table4 paper_fig14 effects checkpoint long_run accuracy sweep)
 wanted=("$@")
 [ "${1-}" = all ] && wanted=("${names[@]}")
 for name in "${wanted[@]:-none}"; do
-  [[ " ${names[*]} " == *" $name "* ]] || { [ $# -eq 0 ] || echo "perf/run.sh: '$name' is no measurement" >&2; sed -n '2,16p' "$0" | cut -c3-; exit 2; }
+  [[ " ${names[*]} " == *" $name "* ]] || { [ $# -eq 0 ] || echo "perf/run.sh: '$name' is no measurement" >&2; sed -n '2,17p' "$0" | cut -c3-; exit 2; }
 done
 
 [[ ${REPEATS-3} =~ ^[1-9][0-9]*$ ]] || { echo "perf/run.sh: REPEATS='$REPEATS': a whole number above 0" >&2; exit 2; }

@@ -100,8 +100,8 @@ void choose_list(Plan& plan, const std::vector<RadiusCount>& sizes) {
   if (!lists) plan.skin = 0.0; // looked for anew at every step
   const Vector3 box = bounding_box(plan.scene.enclosure);
   // Cells of a length that is asked for are for all granules.
-  plan.small_radius =
-      verlet.cell ? plan.largest_radius : largest_in_cells(sizes, plan.skin, *std::max_element(box.begin(), box.end()));
+  const double bed = *std::max_element(box.begin(), box.end()) * std::min(1.0, plan.damper.fill_fraction / 0.6);
+  plan.small_radius = verlet.cell ? plan.largest_radius : largest_in_cells(sizes, plan.skin, bed);
   plan.cell = verlet.cell ? *verlet.cell * diameter : 2.0 * plan.small_radius + plan.skin;
   if (plan.granules == 0) return;
   const GridShape shape = make_grid_shape(box, plan.cell, plan.granules);
