@@ -177,6 +177,7 @@ std::string plan_json(const Plan& plan, const std::string& isa, int threads) {
                     {"skin", plan.skin},
                     {"skin_tuned", plan.skin_tuned},
                     {"cell", plan.cell},
+                    {"small_radius", plan.small_radius},
                     {"grid", plan.grid}};
   json["damper"] = {{"granule_mass", finite_or_null(damper.granule_mass)},
                     {"mass_ratio", finite_or_null(damper.mass_ratio)},

@@ -23,6 +23,11 @@ struct GridShape {
     const int last = cells[k] - 1;
     return x > 0.0 ? (x < last ? static_cast<int>(x) : last) : 0;
   }
+  std::size_t index(int fast, int middle, int slow) const {
+    return (static_cast<std::size_t>(slow) * static_cast<std::size_t>(cells[1]) + static_cast<std::size_t>(middle)) *
+               static_cast<std::size_t>(cells[0]) +
+           static_cast<std::size_t>(fast);
+  }
   std::size_t total() const {
     return static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) * static_cast<std::size_t>(cells[2]);
   }
@@ -44,12 +49,7 @@ public:
   /// First row of each cell of a line of cells along the fastest axis, and where the line ends.
   const std::uint32_t* row_start(int middle, int slow) const { return start_.data() + index(0, middle, slow); }
   std::uint32_t cell_start(int fast, int middle, int slow) const { return start_[index(fast, middle, slow)]; }
-  std::size_t index(int fast, int middle, int slow) const {
-    return (static_cast<std::size_t>(slow) * static_cast<std::size_t>(shape_.cells[1]) +
-            static_cast<std::size_t>(middle)) *
-               static_cast<std::size_t>(shape_.cells[0]) +
-           static_cast<std::size_t>(fast);
-  }
+  std::size_t index(int fast, int middle, int slow) const { return shape_.index(fast, middle, slow); }
   /// First row of a layer of cells along the slowest axis; layer == cells[2] gives the end.
   std::uint32_t layer_start(int layer) const { return start_[index(0, 0, layer)]; }
 

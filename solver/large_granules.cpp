@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace grandamp {
 
@@ -11,18 +12,19 @@ using kernels::IndexRange;
 using kernels::PositionRow;
 using kernels::RowPair;
 
-/// Cells along the grid's axis k where granules within `reach` of the centre can be: the first and the last.
-std::array<int, 2> cells_within(const CellGrid& grid, const PositionRow& row, double reach, std::size_t k) {
+/// Cells along the grid's axis k that lie within `reach` of the centre, in part: the first and the last.
+std::array<int, 2> cells_within(const GridShape& shape, const PositionRow& row, double reach, std::size_t k) {
   const double rounded = 1.000001 * reach;
-  const double centre = (&row.x)[grid.shape().axis[k]];
-  return {grid.shape().cell_along(centre - rounded, k), grid.shape().cell_along(centre + rounded, k)};
+  const double centre = (&row.x)[shape.axis[k]];
+  return {shape.cell_along(centre - rounded, k), shape.cell_along(centre + rounded, k)};
 }
 
 /// Rows of cells around a granule, as far as they lie within `rows`.
 void ranges_around(const CellGrid& grid, const PositionRow& row, double reach, IndexRange rows,
                    std::vector<IndexRange>& ranges) {
-  const std::array<int, 2> fast = cells_within(grid, row, reach, 0), middle = cells_within(grid, row, reach, 1),
-                           slow = cells_within(grid, row, reach, 2);
+  const GridShape& shape = grid.shape();
+  const std::array<int, 2> fast = cells_within(shape, row, reach, 0), middle = cells_within(shape, row, reach, 1),
+                           slow = cells_within(shape, row, reach, 2);
   ranges.clear();
   for (int s = slow[0]; s <= slow[1]; ++s)
     for (int m = middle[0]; m <= middle[1]; ++m) {
@@ -34,10 +36,38 @@ void ranges_around(const CellGrid& grid, const PositionRow& row, double reach, I
 
 } // namespace
 
-void LargeGranules::find(const Granules& granules, double small_radius) {
-  rows_.clear();
-  for (std::uint32_t i = 0; i < granules.count(); ++i)
-    if (granules.position[i].radius > small_radius) rows_.push_back(i);
+void LargeGranules::sort(const Granules& granules, const Vector3& size, const LargeSearch& search) {
+  shape_ = make_grid_shape(size, 2.0 * search.largest_radius + search.skin, rows_.size());
+  const auto cell_of = [&](std::uint32_t row) {
+    const PositionRow& at = granules.position[row];
+    return shape_.index(shape_.cell_along((&at.x)[shape_.axis[0]], 0), shape_.cell_along((&at.x)[shape_.axis[1]], 1),
+                        shape_.cell_along((&at.x)[shape_.axis[2]], 2));
+  };
+  start_.assign(shape_.total() + 1, 0);
+  for (const std::uint32_t row : rows_) ++start_[cell_of(row) + 1];
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+  by_cell_.resize(rows_.size());
+  for (const std::uint32_t row : rows_) by_cell_[next[cell_of(row)]++] = row;
+}
+
+void LargeGranules::list_with_large(const LargeSearch& search, const Granules& granules, std::uint32_t i,
+                                    std::uint32_t next_end, std::vector<RowPair>& pairs) const {
+  const PositionRow& here = granules.position[i];
+  const double reach = here.radius + search.largest_radius + search.skin;
+  const std::array<int, 2> fast = cells_within(shape_, here, reach, 0), middle = cells_within(shape_, here, reach, 1),
+                           slow = cells_within(shape_, here, reach, 2);
+  for (int s = slow[0]; s <= slow[1]; ++s)
+    for (int m = middle[0]; m <= middle[1]; ++m)
+      for (std::uint32_t k = start_[shape_.index(fast[0], m, s)]; k < start_[shape_.index(fast[1], m, s) + 1]; ++k) {
+        const std::uint32_t j = by_cell_[k];
+        if (j <= i || j >= next_end) continue;
+        const PositionRow& there = granules.position[j];
+        const double x = there.x - here.x, y = there.y - here.y, z = there.z - here.z;
+        // A little more than what belongs to the list; what does not is dropped with the others' pairs.
+        const double near = 1.000001 * (here.radius + there.radius + search.skin);
+        if (x * x + y * y + z * z < near * near) pairs.push_back(RowPair::of(i, j));
+      }
 }
 
 void LargeGranules::list_pairs(const LargeSearch& search, const CellGrid& grid, const Granules& granules,
@@ -51,8 +81,9 @@ void LargeGranules::list_pairs(const LargeSearch& search, const CellGrid& grid, 
     const std::uint32_t i = *large;
     const PositionRow& here = granules.position[i];
     const bool own = i < segment.last;
-    ranges_around(grid, here, here.radius + search.small_radius + search.skin,
-                  own ? IndexRange{segment.first, next_end} : segment, ranges);
+    const double reach = here.radius + search.small_radius + search.skin;
+    if (!own && grid.layer_start(cells_within(grid.shape(), here, reach, 2)[0]) >= segment.last) continue;
+    ranges_around(grid, here, reach, own ? IndexRange{segment.first, next_end} : segment, ranges);
     std::size_t room = kernels::list_padding;
     for (const IndexRange& range : ranges) room += range.last - range.first;
     if (found.size() < room) found.resize(room);
@@ -63,16 +94,7 @@ void LargeGranules::list_pairs(const LargeSearch& search, const CellGrid& grid, 
       if (granules.position[j].radius <= search.small_radius)
         pairs.push_back(RowPair::of(std::min(i, j), std::max(i, j)));
     }
-    if (!own) continue;
-    const int top = cells_within(grid, here, here.radius + search.largest_radius + search.skin, 2)[1];
-    const std::uint32_t beyond = std::min(next_end, grid.layer_start(top + 1));
-    for (auto other = large + 1; other != end && *other < beyond; ++other) {
-      const PositionRow& there = granules.position[*other];
-      const double x = there.x - here.x, y = there.y - here.y, z = there.z - here.z;
-      // A little more than what belongs to the list; what does not is dropped with the others' pairs.
-      const double reach = 1.000001 * (here.radius + there.radius + search.skin);
-      if (x * x + y * y + z * z < reach * reach) pairs.push_back(RowPair::of(i, *other));
-    }
+    if (own) list_with_large(search, granules, i, next_end, pairs);
   }
   std::sort(pairs.begin(), pairs.end(), [](const RowPair& a, const RowPair& b) {
     return a.first_offset != b.first_offset ? a.first_offset < b.first_offset : a.second_offset < b.second_offset;

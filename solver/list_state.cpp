@@ -147,7 +147,7 @@ void restore(VerletList& list, const ListState& state, std::uint32_t granules, s
       block.last = block_row = from.block_rows.next(block.first, segment.last);
       block.inner = put_range(from, segment, segment.inner, block.first, block.last, segment.last, granules);
       block.boundary = put_range(from, segment, segment.boundary, block.first, block.last, granules, granules);
-      block.front = std::max(block.last, rows_reached(segment.inner, block.inner, granules).last);
+      block.front = block.ahead = std::max(block.last, rows_reached(segment.inner, block.inner, granules).last);
       block.beyond = rows_reached(segment.boundary, block.boundary, granules);
       segment.blocks.push_back(block);
     }

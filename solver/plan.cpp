@@ -8,7 +8,6 @@
 #include "solver/size_cut.hpp"
 #include "solver/time_step.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace grandamp {
@@ -94,14 +93,14 @@ void choose_list(Plan& plan, const std::vector<RadiusCount>& sizes) {
     // Measured: 0.15 to 0.2 d is best for dense scenes, 0.3 to 0.4 d for dilute ones. Of unlike granules what counts is
     // how many candidates there are of each, and most of them are of the size of most.
     const double dense = std::clamp(plan.damper.fill_fraction / 0.3, 0.0, 1.0);
-    plan.skin = (0.35 - 0.15 * dense) * mean_diameter;
+    // A fixed interval is for a skin that does not depend on what other sizes there are.
+    plan.skin = (0.35 - 0.15 * dense) * (verlet.policy == ListPolicy::fixed ? diameter : mean_diameter);
     if (verlet.cell) plan.skin = std::min(plan.skin, (*verlet.cell - 1.0) * diameter);
   }
   if (!lists) plan.skin = 0.0; // looked for anew at every step
   const Vector3 box = bounding_box(plan.scene.enclosure);
   // Cells of a length that is asked for are for all granules.
-  const double bed = *std::max_element(box.begin(), box.end()) * std::min(1.0, plan.damper.fill_fraction / 0.6);
-  plan.small_radius = verlet.cell ? plan.largest_radius : largest_in_cells(sizes, plan.skin, bed);
+  plan.small_radius = verlet.cell ? plan.largest_radius : largest_in_cells(sizes, plan.skin);
   plan.cell = verlet.cell ? *verlet.cell * diameter : 2.0 * plan.small_radius + plan.skin;
   if (plan.granules == 0) return;
   const GridShape shape = make_grid_shape(box, plan.cell, plan.granules);

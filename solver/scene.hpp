@@ -179,7 +179,8 @@ enum class ListPolicy { guarded, predicted, displacement, fixed, none, all_pairs
 
 struct VerletControl {
   ListPolicy policy = ListPolicy::guarded;
-  std::optional<double> skin; ///< over the largest diameter; left out: tuned as the run goes
+  /// Over the largest diameter; left out: tuned as the run goes, beginning with a share of the mean diameter.
+  std::optional<double> skin;
   std::optional<double> cell; ///< cell length over the largest diameter; left out: chosen
   double safety = 1.5;        ///< beta of the paper's predicted interval
   int max_interval = 150;     ///< U_L of the paper's predicted interval

@@ -23,7 +23,6 @@ double mean_radius(const std::vector<RadiusCount>& sizes);
 /// that of the largest where two levels would not save a search for neighbours at least a fifth of its tests.
 /// @param sizes   of radius_counts(); empty: the result is 0
 /// @param skin    of the list, m
-/// @param height  of the bed along the grid's longest axis, m
-double largest_in_cells(const std::vector<RadiusCount>& sizes, double skin, double height);
+double largest_in_cells(const std::vector<RadiusCount>& sizes, double skin);
 
 } // namespace grandamp

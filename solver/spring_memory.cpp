@@ -40,15 +40,19 @@ public:
     for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
     std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
     for (const LoadedSpring& spring : springs) springs_[next[spring.id]++] = spring;
+    for (std::size_t i = 0; i < granules; ++i) // a large granule may have hundreds
+      std::sort(springs_.data() + start_[i], springs_.data() + start_[i + 1], by_partner);
   }
 
   const LoadedSpring* find(std::uint32_t id, std::uint32_t partner) const {
-    for (std::uint32_t k = start_[id]; k < start_[id + 1]; ++k)
-      if (springs_[k].partner == partner) return &springs_[k];
-    return nullptr;
+    const LoadedSpring *const first = springs_.data() + start_[id], *const last = springs_.data() + start_[id + 1];
+    const LoadedSpring* const found = std::lower_bound(first, last, LoadedSpring{id, partner, {}}, by_partner);
+    return found != last && found->partner == partner ? found : nullptr;
   }
 
 private:
+  static bool by_partner(const LoadedSpring& a, const LoadedSpring& b) { return a.partner < b.partner; }
+
   std::vector<LoadedSpring> springs_; ///< by id
   std::vector<std::uint32_t> start_;
 };

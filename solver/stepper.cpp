@@ -287,8 +287,8 @@ void Stepper::sweep(const Kernels& kernels, const Vector3& kick, const Vector3& 
         // Partners in the layer ahead come in no order that a processor would guess, and where a layer is larger than
         // its second-level cache the next block's own rows have left it again.
         const Block& next = segment.blocks[b + 1];
-        pairs.ahead = {{{touched, next.front}, {next.first, next.last}}};
-        touched = std::max(touched, next.front);
+        pairs.ahead = {{{touched, next.ahead}, {next.first, next.last}}};
+        touched = std::max(touched, next.ahead);
       }
       pairs.pairs = segment.inner.data() + block.inner.first;
       pairs.count = block.inner.to_test(approach);

@@ -133,6 +133,7 @@ Stepper::Stepper(const Plan& plan, bool same_sizes, kernels::InstructionSet isa,
   tuner_.least = 0.04 * 2.0 * plan_.mean_radius;
   tuner_.largest = 0.8 * 2.0 * plan_.mean_radius;
   if (plan_.scene.verlet.cell) tuner_.largest = std::min(tuner_.largest, plan_.cell - 2.0 * plan_.largest_radius);
+  tuner_.least = std::min(tuner_.least, tuner_.largest);
   search_ = VerletList::Search::with(isa_, contact_effects_.variety == Variety::alike, plan_.largest_radius);
   search_.small_radius = plan_.small_radius;
 

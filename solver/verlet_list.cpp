@@ -18,8 +18,8 @@ constexpr int most_segments = 16;
 /// layers a segment has.
 constexpr int least_layers = 8;
 
-/// Positions as four arrays in units of `unit`, laid over the force rows (64 bytes a granule, of which double needs
-/// 32).
+/// Positions as four arrays in units of `unit`, laid over the force rows: 64 bytes a granule, of which those in float
+/// take 16 and those in double 32.
 template <class Real> struct Coordinates {
   Real *x, *y, *z, *radius;
   double scale;
@@ -30,7 +30,7 @@ template <class Real> struct Coordinates {
     x = reinterpret_cast<Real*>(reinterpret_cast<char*>(granules.force.data()) + behind * rows);
     y = x + rows;
     z = y + rows;
-    radius = z + rows; // vectors may read past it: the upper half of the buffer is free
+    radius = z + rows; // vectors may read past it: the last 16 bytes a granule are free
   }
 
   kernels::SearchArguments<Real> arguments(double reach) const {
@@ -122,7 +122,8 @@ void list_walls(Segment& segment, const Granules& granules, const std::vector<Wa
 
 /// How many cells along the grid's axis k a length takes up, where granules stand anywhere in a cell.
 int cells_for(double length, const GridShape& shape, std::size_t k) {
-  return static_cast<int>(std::min(std::ceil(length * shape.inverse_length[k]), static_cast<double>(shape.cells[k])));
+  return static_cast<int>(
+      std::min(std::ceil(1.000001 * length * shape.inverse_length[k]), static_cast<double>(shape.cells[k])));
 }
 
 /// Calls look(first, last) for the rows in layers [first_layer, last_layer) that can be near the wall: at a plane those
@@ -282,7 +283,7 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
   segment.candidates = 0;
   Block block;
   block.first = segment.first;
-  block.front = segment.first;
+  block.front = block.ahead = segment.first;
   std::size_t first_inner = 0, first_boundary = 0;
   auto large = segment.large.begin();
 
@@ -290,15 +291,8 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
     block.last = last;
     for (; large != segment.large.end() && large->first() < last; ++large) {
       const std::uint32_t row = large->second();
-      if (row < segment.last) {
-        segment.inner.append(*large);
-        block.front = std::max(block.front, row + 1);
-      } else {
-        segment.boundary.append(*large);
-        block.beyond = block.beyond.last > 0 ? kernels::IndexRange{std::min(block.beyond.first, row),
-                                                                   std::max(block.beyond.last, row + 1)}
-                                             : kernels::IndexRange{row, row + 1};
-      }
+      (row < segment.last ? segment.inner : segment.boundary).append(*large);
+      if (row < segment.last) block.front = std::max(block.front, row + 1);
     }
     block.inner = classed(segment.inner, first_inner, search, granules, segment);
     block.boundary = classed(segment.boundary, first_boundary, search, granules, segment);
@@ -331,7 +325,8 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
         do ++last;
         while (last < inner.cells && inner.own[last] - block.first < kernels::block_granules);
         append(segment.inner, inner, first, last, arguments, search.coarse);
-        block.front = std::max(block.front, inner.count > 0 ? reached(inner) : end);
+        block.ahead = std::max(block.ahead, inner.count > 0 ? reached(inner) : end);
+        block.front = std::max(block.front, block.ahead);
         if (across.count == 0) continue;
         append(segment.boundary, across, first, last, arguments, search.coarse);
         block.beyond = {block.beyond.last > 0 ? block.beyond.first : across.beside[0][0], reached(across)};
@@ -355,14 +350,18 @@ void VerletList::search_all(Granules& granules, const Vector3& size, const std::
   const Coordinates<double> exact(granules, 1.0, 4 * sizeof(float));
   const LargeSearch large{search.kernel, exact.arguments(search.skin), search.small_radius, search.largest_radius,
                           search.skin};
-  large_.clear();
-  if (search.two_levels()) large_.find(granules, search.small_radius);
-
   const auto first_row = [&](std::size_t s) { return grid_.layer_start(segment_layers_[s]); };
   team.each(segments_.size(), [&](std::size_t s) {
     coordinates.fill(granules, first_row(s), first_row(s + 1), search.small_radius);
-    if (large_.any()) exact.fill(granules, first_row(s), first_row(s + 1));
+    segments_[s].large_rows.clear();
+    if (!search.two_levels()) return;
+    exact.fill(granules, first_row(s), first_row(s + 1));
+    for (std::uint32_t i = first_row(s); i < first_row(s + 1); ++i)
+      if (granules.position[i].radius > search.small_radius) segments_[s].large_rows.push_back(i);
   });
+  large_.clear();
+  for (const Segment& segment : segments_) large_.add(segment.large_rows);
+  if (large_.any()) large_.sort(granules, size, large);
   team.each(segments_.size(), [&](std::size_t s) {
     segments_[s].large.clear();
     if (large_.any())
@@ -401,7 +400,7 @@ void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall
       segment.inner.set_end(search.kernel(arguments, {i, i + 1}, segment.last, nullptr, 0, to));
     }
     block.inner = classed(segment.inner, first_pair, search, granules, segment);
-    block.front = segment.last;
+    block.front = block.ahead = segment.last;
     segment.blocks.push_back(block);
   }
   list_walls(segment, granules, walls, search.skin,

@@ -1,6 +1,7 @@
 // The Verlet list: pairs closer than their radii and the skin, found on the half-shell grid, and the granules near each
-// wall. The rows are cut into segments of at least two cell layers, each into blocks; how they are cut depends on the
-// granules' places alone. Pairs across two segments stand apart, so that segments can be swept at the same time.
+// wall. The rows are cut into segments, so thick that no pair reaches further than into the next one, each into blocks;
+// how they are cut depends on the granules' places alone. Pairs across two segments stand apart, so that segments can
+// be swept at the same time.
 #pragma once
 
 #include "kernels/arguments.hpp"
@@ -60,7 +61,10 @@ struct Block {
   /// One past the last row in the segment, or some rows more: pairs of these rows with the next segment come before a
   /// sweep of this block.
   std::uint32_t front = 0;
-  kernels::IndexRange beyond; ///< rows of the next segment, to be asked of memory ahead
+  /// To be asked of memory ahead: rows up to this one, and these of the next segment. What large granules reach
+  /// besides, here and there in many layers, is not among them.
+  std::uint32_t ahead = 0;
+  kernels::IndexRange beyond;
 };
 
 struct Segment {
@@ -73,7 +77,8 @@ struct Segment {
   std::size_t candidates = 0;             ///< without padding
   std::vector<kernels::RowPair> touching; ///< scratch of the sweep
   PairList far_pairs;                     ///< scratch of the build
-  std::vector<kernels::RowPair> large;    ///< scratch of the build: pairs with a large granule, sorted
+  std::vector<std::uint32_t> large_rows;  ///< scratch of the build: large granules
+  std::vector<kernels::RowPair> large;    ///< scratch of the build: pairs with one of them, sorted
   std::vector<std::uint32_t> touching_wall;
 };
 
