@@ -4,7 +4,7 @@
 #   perf/run.sh scenes         S1 to S5, this program alone
 #   perf/run.sh peers          S1 to S5, in turn with LAMMPS and LIGGGHTS
 #   perf/run.sh sizes          100 to 10,000,000 granules: time and memory
-#   perf/run.sh radii          granules of two sizes, 1 : 1 to 1 : 20
+#   perf/run.sh radii          granules of unlike sizes, up to 1 : 20
 #   perf/run.sh threads        1, 2, ... threads
 #   perf/run.sh paper_table4   the paper's contact searches, Table 4 and Fig. 13
 #   perf/run.sh paper_fig14    intervals between lists, Fig. 14

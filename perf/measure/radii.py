@@ -1,28 +1,36 @@
-"""Granules of two sizes, from 1 : 1 to 1 : 20: cells of the small ones' size against cells of the large ones'."""
+"""Granules of unlike sizes, up to 1 : 20: cells of the small ones' size against cells of the largest ones'."""
 
 from . import peers, states
 from .common import Report, in_turn, median, number, perf, quick, repeats, step_timer
 from .states import START_SPEED
 
-RATIOS = (1, 5) if quick else (1, 2, 3, 5, 10, 20)
 SMALL = 2000 if quick else 20000
 RADIUS = 0.5e-3
 STEP = 2.0e-6
 
 
-def scene(ratio):
-    """As much of the large as of the small, at random, fallen to the bottom under 100 m/s^2."""
-    large = max(1, round(SMALL / ratio**3)) if ratio > 1 else 0
-    size = [0.04 * (SMALL / 20000) ** (1.0 / 3.0)] * 2
-    size.append(2.25 * size[0])
+def two_sizes(ratio):
+    return [(1.0, SMALL)] + ([(ratio, max(1, round(SMALL / ratio**3)))] if ratio > 1 else [])
+
+
+def twelve_sizes(ratio):
+    factors = [ratio ** (k / 11) for k in range(12)]
+    return [(factor, max(1, round(0.6 * SMALL / factor**3))) for factor in factors]
+
+
+BEDS = {f"1 : {ratio}": two_sizes(ratio) for ratio in ((1, 5) if quick else (1, 2, 3, 5, 10, 20))}
+BEDS["twelve, 1 : 10"] = twelve_sizes(5.0 if quick else 10.0)
+
+
+def scene(name, sizes):
+    """As much of each size as of the others, at random, fallen to the bottom under 100 m/s^2."""
+    side = 0.04 * (SMALL / 20000 * len(sizes) / 2.0) ** (1.0 / 3.0)
     text = (perf / "scenes" / "S3.toml").read_text(encoding="utf-8")
-    text = states.replaced(text, "[0.1, 0.1, 0.12]", str(size))
+    text = states.replaced(text, "[0.1, 0.1, 0.12]", str([side, side, 2.25 * side]))
     text = states.replaced(text, "4.5e-6", str(STEP))
-    name = f"radii_{ratio}_{SMALL}"
     if not (states.states / f"{name}.csv").exists():
-        given = f"count   = {SMALL}\nradius  = {RADIUS}\ndensity = 1190.0"
-        if large:
-            given += f'\n\n[[granules]]\nname    = "large"\ncount   = {large}\nradius  = {RADIUS * ratio}\ndensity = 1190.0'
+        given = "\n\n[[granules]]\n".join(f'name    = "size {k}"\ncount   = {count}\nradius  = {RADIUS * factor}\ndensity = 1190.0'
+                                          for k, (factor, count) in enumerate(sizes))
         falling = states.replaced(text, 'file    = "S3.csv"\ndensity = 1190.0', given)
         falling = states.replaced(falling, "-9.81", "-100.0")
         falling = states.replaced(falling, "amplitude = 5.0e-3", "amplitude = 0.0")
@@ -38,20 +46,21 @@ def scene(ratio):
 def main():
     rows = []
     steps, warm = (200, 50) if quick else (4000, 1000)
-    for ratio in RATIOS:
-        file = scene(ratio)
-        one_level = {"verlet.cell": 1.0 + max(0.5 / ratio, 0.05)}
-        taken = in_turn({"two": lambda: step_timer(file, steps=steps, warm=warm),
+    for told, sizes in BEDS.items():
+        largest = sizes[-1][0]
+        file = scene(f"radii_{len(sizes)}_{largest:g}_{SMALL}", sizes)
+        one_level = {"verlet.cell": 1.0 + max(0.5 / largest, 0.05)}
+        taken = in_turn({"chosen": lambda: step_timer(file, steps=steps, warm=warm),
                          "one": lambda: step_timer(file, one_level, steps=steps, warm=warm)})
-        of = taken["two"][0]
-        two, one = (median([t["processor_ns_per_step"][0] for t in taken[k]]) / of["granules"] for k in ("two", "one"))
-        rows.append([f"1 : {ratio}", f"{of['granules']:,}", f"{of['granules'] - SMALL:,}", number(two), number(one),
-                     number(one / two), number(of["contacts_per_granule"]), number(of["candidates_per_granule"]),
-                     peers.interval(of), number(of["skin_over_diameter"] * ratio)])
-    report = Report("radii", "Granules of two sizes", f"""{SMALL:,} granules of {1000 * RADIUS} mm and as much volume of larger ones, a bed that begins to be shaken as S3 is.
-Processor time, ns per granule and step, one thread, medians of {repeats} runs taken in turn, {steps:,} steps after {warm:,}:
-as the program chooses (where two levels pay: cells of the small granules' size, large ones looked for one by one), and
-with cells for the largest (`verlet.cell`).""")
-    report.table(["radii", "granules", "large", "chosen", "cells for the largest", "ratio", "contacts per granule",
-                  "candidates per granule", "steps per list", "skin / small diameter"], rows)
+        of = taken["chosen"][0]
+        chosen, one = (median([t["processor_ns_per_step"][0] for t in taken[k]]) / of["granules"] for k in ("chosen", "one"))
+        rows.append([told, f"{of['granules']:,}", number(chosen), number(one), number(one / chosen),
+                     number(of["contacts_per_granule"]), number(of["candidates_per_granule"]), peers.interval(of),
+                     number(of["skin_over_diameter"] * largest)])
+    report = Report("radii", "Granules of unlike sizes", f"""{SMALL:,} granules of {1000 * RADIUS} mm and as much volume of larger ones; and twelve sizes, as much volume of each: a bed
+that begins to be shaken as S3 is. Processor time, ns per granule and step, one thread, medians of {repeats} runs taken in turn,
+{steps:,} steps after {warm:,}: as the program chooses (where two levels pay: cells of the small granules' size, large ones
+looked for one by one), and with cells for the largest (`verlet.cell`).""")
+    report.table(["radii", "granules", "chosen", "cells for the largest", "ratio", "contacts per granule",
+                  "candidates per granule", "steps per list", "skin / smallest diameter"], rows)
     report.write()
