@@ -58,6 +58,30 @@ Names faults(const Scene& scene) {
 
 } // namespace
 
+TEST_CASE("plan: the skin goes by the mean diameter, under a fixed interval by the largest; a given cell is for all") {
+  Scene scene = damper();
+  scene.populations[0].count = 10;
+  const double alike = make_plan(scene).skin / 1.85e-3;
+  Population small = scene.populations[0];
+  small.name = "small";
+  small.count = 5000;
+  small.radius = 0.2e-3;
+  small.mass = 1190.0 * sphere_volume(small.radius);
+  scene.populations.push_back(small);
+  const double mean = (10 * 1.85e-3 + 5000 * 0.2e-3) / 5010;
+  const Plan plan = make_plan(scene);
+  CHECK(plan.mean_radius == doctest::Approx(mean));
+  CHECK(plan.skin == doctest::Approx(alike * mean).epsilon(0.02)); // a little denser than without the small ones
+  CHECK(plan.small_radius == 0.2e-3);
+  CHECK(plan.cell == doctest::Approx(0.4e-3 + plan.skin));
+  scene.verlet.policy = ListPolicy::fixed;
+  CHECK(make_plan(scene).skin == doctest::Approx(alike * 1.85e-3).epsilon(0.02));
+  scene.verlet.policy = ListPolicy::guarded;
+  scene.verlet.cell = 1.2;
+  CHECK(make_plan(scene).small_radius == 1.85e-3);
+  CHECK(make_plan(scene).cell == doctest::Approx(1.2 * 3.7e-3));
+}
+
 TEST_CASE("the plan of a damper") {
   const Plan plan = make_plan(damper());
   CHECK(plan.granules == 317);
