@@ -58,7 +58,8 @@ Names faults(const Scene& scene) {
 
 } // namespace
 
-TEST_CASE("plan: the skin goes by the mean diameter, under a fixed interval by the largest; a given cell is for all") {
+TEST_CASE(
+    "plan: the skin goes by the mean diameter, under a fixed interval by the largest, and a given cell is for all") {
   Scene scene = damper();
   scene.populations[0].count = 10;
   const double alike = make_plan(scene).skin / 1.85e-3;
