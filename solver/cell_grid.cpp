@@ -55,16 +55,12 @@ void CellGrid::sort(Granules& granules, const GridShape& shape, const Team& team
   start_.assign(cells + 1, 0);
   counts_.resize(pieces);
 
-  const auto cell_along = [&](const kernels::PositionRow& row, std::size_t k) {
-    return shape_.cell_along((&row.x)[shape_.axis[k]], k); // whatever it is, a cell: guards come later
-  };
   team.each(pieces, [&](std::size_t piece) {
     std::vector<std::uint32_t>& counts = counts_[piece];
     counts.assign(cells, 0);
     const std::uint32_t end = piece_begin(count, pieces, piece + 1);
     for (std::uint32_t i = piece_begin(count, pieces, piece); i < end; ++i) {
-      const kernels::PositionRow& row = granules.position[i];
-      const std::size_t cell = index(cell_along(row, 0), cell_along(row, 1), cell_along(row, 2));
+      const std::size_t cell = shape_.cell_of(granules.position[i]); // whatever its place: guards come later
       cell_of_[i] = static_cast<std::uint32_t>(cell);
       ++counts[cell];
     }

@@ -28,6 +28,11 @@ struct GridShape {
                static_cast<std::size_t>(cells[0]) +
            static_cast<std::size_t>(fast);
   }
+  /// The cell of a granule's centre, wherever that is.
+  std::size_t cell_of(const kernels::PositionRow& row) const {
+    const auto along = [&](std::size_t k) { return cell_along((&row.x)[axis[k]], k); };
+    return index(along(0), along(1), along(2));
+  }
   std::size_t total() const {
     return static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) * static_cast<std::size_t>(cells[2]);
   }

@@ -12,19 +12,23 @@ using kernels::IndexRange;
 using kernels::PositionRow;
 using kernels::RowPair;
 
-/// Cells along the grid's axis k that lie within `reach` of the centre, in part: the first and the last.
-std::array<int, 2> cells_within(const GridShape& shape, const PositionRow& row, double reach, std::size_t k) {
+/// The first and the last cell along each axis of the grid.
+using CellBox = std::array<std::array<int, 2>, 3>;
+
+/// The cells that lie within `reach` of the centre, in part.
+CellBox cells_within(const GridShape& shape, const PositionRow& row, double reach) {
   const double rounded = 1.000001 * reach;
-  const double centre = (&row.x)[shape.axis[k]];
-  return {shape.cell_along(centre - rounded, k), shape.cell_along(centre + rounded, k)};
+  CellBox box{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double centre = (&row.x)[shape.axis[k]];
+    box[k] = {shape.cell_along(centre - rounded, k), shape.cell_along(centre + rounded, k)};
+  }
+  return box;
 }
 
-/// Rows of cells around a granule, as far as they lie within `rows`.
-void ranges_around(const CellGrid& grid, const PositionRow& row, double reach, IndexRange rows,
-                   std::vector<IndexRange>& ranges) {
-  const GridShape& shape = grid.shape();
-  const std::array<int, 2> fast = cells_within(shape, row, reach, 0), middle = cells_within(shape, row, reach, 1),
-                           slow = cells_within(shape, row, reach, 2);
+/// Rows of those cells, as far as they lie within `rows`.
+void ranges_of(const CellGrid& grid, const CellBox& box, IndexRange rows, std::vector<IndexRange>& ranges) {
+  const auto& [fast, middle, slow] = box;
   ranges.clear();
   for (int s = slow[0]; s <= slow[1]; ++s)
     for (int m = middle[0]; m <= middle[1]; ++m) {
@@ -38,11 +42,7 @@ void ranges_around(const CellGrid& grid, const PositionRow& row, double reach, I
 
 void LargeGranules::sort(const Granules& granules, const Vector3& size, const LargeSearch& search) {
   shape_ = make_grid_shape(size, 2.0 * search.largest_radius + search.skin, rows_.size());
-  const auto cell_of = [&](std::uint32_t row) {
-    const PositionRow& at = granules.position[row];
-    return shape_.index(shape_.cell_along((&at.x)[shape_.axis[0]], 0), shape_.cell_along((&at.x)[shape_.axis[1]], 1),
-                        shape_.cell_along((&at.x)[shape_.axis[2]], 2));
-  };
+  const auto cell_of = [&](std::uint32_t row) { return shape_.cell_of(granules.position[row]); };
   start_.assign(shape_.total() + 1, 0);
   for (const std::uint32_t row : rows_) ++start_[cell_of(row) + 1];
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
@@ -54,9 +54,7 @@ void LargeGranules::sort(const Granules& granules, const Vector3& size, const La
 void LargeGranules::list_with_large(const LargeSearch& search, const Granules& granules, std::uint32_t i,
                                     std::uint32_t next_end, std::vector<RowPair>& pairs) const {
   const PositionRow& here = granules.position[i];
-  const double reach = here.radius + search.largest_radius + search.skin;
-  const std::array<int, 2> fast = cells_within(shape_, here, reach, 0), middle = cells_within(shape_, here, reach, 1),
-                           slow = cells_within(shape_, here, reach, 2);
+  const auto [fast, middle, slow] = cells_within(shape_, here, here.radius + search.largest_radius + search.skin);
   for (int s = slow[0]; s <= slow[1]; ++s)
     for (int m = middle[0]; m <= middle[1]; ++m)
       for (std::uint32_t k = start_[shape_.index(fast[0], m, s)]; k < start_[shape_.index(fast[1], m, s) + 1]; ++k) {
@@ -81,9 +79,10 @@ void LargeGranules::list_pairs(const LargeSearch& search, const CellGrid& grid, 
     const std::uint32_t i = *large;
     const PositionRow& here = granules.position[i];
     const bool own = i < segment.last;
-    const double reach = here.radius + search.small_radius + search.skin;
-    if (!own && grid.layer_start(cells_within(grid.shape(), here, reach, 2)[0]) >= segment.last) continue;
-    ranges_around(grid, here, reach, own ? IndexRange{segment.first, next_end} : segment, ranges);
+    const CellBox box = cells_within(grid.shape(), here, here.radius + search.small_radius + search.skin);
+    const auto lowest_layer = box[2][0];
+    if (!own && grid.layer_start(lowest_layer) >= segment.last) continue;
+    ranges_of(grid, box, own ? IndexRange{segment.first, next_end} : segment, ranges);
     std::size_t room = kernels::list_padding;
     for (const IndexRange& range : ranges) room += range.last - range.first;
     if (found.size() < room) found.resize(room);

@@ -183,11 +183,12 @@ Plan make_plan(const Scene& scene) {
   if (excitation.kind == ExcitationKind::chirp && !excitation.sweep_duration)
     excitation.sweep_duration = excitation.period.value_or(scene.time.duration);
   plan.granules = granule_count(scene);
-  const RadiusRange radii = radius_range(scene);
   const std::vector<RadiusCount> sizes = radius_counts(scene);
-  plan.smallest_radius = radii.smallest;
-  plan.largest_radius = radii.largest;
-  plan.mean_radius = mean_radius(sizes);
+  if (!sizes.empty()) {
+    plan.smallest_radius = sizes.front().radius;
+    plan.largest_radius = sizes.back().radius;
+    plan.mean_radius = mean_radius(sizes);
+  }
   plan.damper = damper_numbers(scene);
 
   const TimeStep step = choose_time_step(scene, contacts);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace grandamp {
 
@@ -28,7 +27,7 @@ double tests(const std::vector<RadiusCount>& sizes, double cut, double skin) {
   double solid = 0.0, all = 0.0, large = 0.0;
   for (const RadiusCount& size : sizes) {
     const auto count = static_cast<double>(size.count);
-    solid += count * 4.0 / 3.0 * std::numbers::pi * size.radius * size.radius * size.radius;
+    solid += count * sphere_volume(size.radius);
     all += count;
     if (size.radius > cut) large += count;
   }
@@ -44,7 +43,7 @@ double tests(const std::vector<RadiusCount>& sizes, double cut, double skin) {
       continue;
     }
     const double reach = size.radius + cut + skin, side = 2.0 * reach + cell;
-    const double ball = 4.0 / 3.0 * std::numbers::pi, within = ball * (cube(reach) - cube(size.radius));
+    const double within = sphere_volume(reach) - sphere_volume(size.radius);
     sum += count * (exact_test * density * cube(side) + line_of_cells * side * side / (cell * cell) +
                     pair_found * density * within);
   }
@@ -55,15 +54,16 @@ double tests(const std::vector<RadiusCount>& sizes, double cut, double skin) {
 
 std::vector<RadiusCount> radius_counts(const Scene& scene) {
   std::vector<RadiusCount> given, sizes;
+  const auto add = [](std::vector<RadiusCount>& to, double radius, std::size_t count) {
+    if (to.empty() || to.back().radius != radius) to.push_back({radius, 0});
+    to.back().count += count;
+  };
   for (const Population& population : scene.populations) {
-    if (population.radii.empty() && population.count > 0) given.push_back({population.radius, population.count});
-    for (const double radius : population.radii) given.push_back({radius, 1});
+    if (population.radii.empty() && population.count > 0) add(given, population.radius, population.count);
+    for (const double radius : population.radii) add(given, radius, 1);
   }
   std::sort(given.begin(), given.end(), [](const RadiusCount& a, const RadiusCount& b) { return a.radius < b.radius; });
-  for (const RadiusCount& size : given) {
-    if (sizes.empty() || sizes.back().radius < size.radius) sizes.push_back({size.radius, 0});
-    sizes.back().count += size.count;
-  }
+  for (const RadiusCount& size : given) add(sizes, size.radius, size.count);
   return sizes;
 }
 

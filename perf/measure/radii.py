@@ -19,7 +19,8 @@ def twelve_sizes(ratio):
 
 
 BEDS = {f"1 : {ratio}": two_sizes(ratio) for ratio in ((1, 5) if quick else (1, 2, 3, 5, 10, 20))}
-BEDS["twelve, 1 : 10"] = twelve_sizes(5.0 if quick else 10.0)
+WIDEST = 5 if quick else 10
+BEDS[f"twelve, 1 : {WIDEST}"] = twelve_sizes(WIDEST)
 
 
 def scene(name, sizes):

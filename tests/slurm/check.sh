@@ -13,7 +13,7 @@ stop() {
   local status=$? process
   for process in ${processes[@]+"${processes[@]}"}; do kill "$process" 2>/dev/null || true; done
   for process in ${processes[@]+"${processes[@]}"}; do wait "$process" 2>/dev/null || true; done
-  if [ $status -ne 0 ]; then tail -n 20 "$folder"/*.log "$folder"/work/*.log 2>/dev/null || true; fi
+  if [ $status -ne 0 ]; then tail -n 20 "$folder"/*.log "$folder"/jobs/*.log 2>/dev/null || true; fi
   rm -rf "$folder"
   exit $status
 }
@@ -31,7 +31,7 @@ until_true() {
   return 1
 }
 
-mkdir "$folder/state" "$folder/spool" "$folder/work" "$folder/munge"
+mkdir "$folder/state" "$folder/spool" "$folder/jobs" "$folder/munge"
 chmod 755 "$folder/munge"
 head -c 1024 /dev/urandom >"$folder/munge/key"
 chmod 400 "$folder/munge/key"
@@ -75,7 +75,7 @@ slurmd -D -N "$node" >"$folder/slurmd.log" 2>&1 &
 processes+=($!)
 until_true "an idle node" 60 sh -c 'sinfo --noheader --format=%t | grep -qx idle'
 
-cd "$folder/work"
+cd "$folder/jobs"
 cp "$source_folder/tests/slurm/scene.toml" .
 export GRANDAMP=$program
 sbatch --array=0-2 "$source_folder/io/slurm/sweep.sbatch" scene.toml --vary structure.damping=0.05:0.1:4 --seeds 2 -o sweep
