@@ -1,6 +1,6 @@
 #include "io/case_numbers.hpp"
 
-#include <nlohmann/json.hpp>
+#include "io/json.hpp"
 
 #include <array>
 #include <cmath>
@@ -10,7 +10,6 @@ namespace grandamp {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 void collect(const Json& node, const std::string& path, CaseNumbers& numbers) {

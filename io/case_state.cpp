@@ -21,11 +21,10 @@ namespace grandamp {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
-Json read_json(const fs::path& file) {
+nlohmann::json read_json(const fs::path& file) {
   std::ifstream stream(file);
-  return Json::parse(stream, nullptr, false);
+  return nlohmann::json::parse(stream, nullptr, false);
 }
 
 /// A run holds a lock on its folder (io/run_folder.hpp).
@@ -72,25 +71,27 @@ CaseState state_of(const CaseJob& job) {
   std::error_code error;
   if (!fs::exists(job.folder, error)) return {};
   demand_overrides(job);
-  const Json summary = read_json(job.folder / "summary.json");
-  const Json status = summary.is_object() ? summary.value("status", Json()) : Json();
+  const nlohmann::json summary = read_json(job.folder / "summary.json");
+  const nlohmann::json status = summary.is_object() ? summary.value("status", nlohmann::json()) : nlohmann::json();
   if (status == "done") return {CaseStatus::done, 0, ""};
   if (runs_now(job.folder)) return {CaseStatus::running_elsewhere, 0, ""};
   if (status == "stopped by a guard")
-    return {CaseStatus::failed, 3, summary.value("message", Json()).is_string() ? summary["message"] : Json("")};
-  const Json failure = read_json(job.folder / "failure.json");
-  if (failure.is_object() && failure.value("status", Json()).is_number_integer() &&
-      failure.value("error", Json()).is_string())
+    return {CaseStatus::failed, 3,
+            summary.value("message", nlohmann::json()).is_string() ? summary["message"] : nlohmann::json("")};
+  const nlohmann::json failure = read_json(job.folder / "failure.json");
+  if (failure.is_object() && failure.value("status", nlohmann::json()).is_number_integer() &&
+      failure.value("error", nlohmann::json()).is_string())
     return {CaseStatus::failed, failure["status"], failure["error"]};
   return {fs::exists(job.folder / "scene.toml", error) ? CaseStatus::started : CaseStatus::missing, 0, ""};
 }
 
 void note_failure(const CaseJob& job, int exit_status, const std::string& error) {
-  const Json failure{{"status", exit_status}, {"error", error}};
+  const nlohmann::json failure{{"status", exit_status}, {"error", error}};
   std::error_code made;
   fs::create_directories(job.folder, made);
   if (made) throw FileError(job.folder.string() + ": cannot make the folder: " + made.message());
-  replace_shared_file(job.folder / "failure.json", failure.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  replace_shared_file(job.folder / "failure.json",
+                      failure.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 std::string summary_of(const CaseJob& job) {

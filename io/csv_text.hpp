@@ -15,6 +15,9 @@ struct CsvContent {
   std::string fault; ///< why it cannot be read; empty: it was
 };
 
+/// Enough to see what is wrong with a file.
+inline constexpr std::size_t most_faults = 20;
+
 /// A regular file of at most 4 GiB.
 CsvContent read_csv(const std::filesystem::path& file);
 

@@ -13,14 +13,14 @@ namespace grandamp {
 
 namespace {
 
-constexpr std::size_t most_faults = 20; // enough to see what is wrong with a file
 constexpr std::array<std::string_view, 12> names{"id", "x",  "y",  "z",  "radius", "density",
                                                  "vx", "vy", "vz", "wx", "wy",     "wz"};
-enum Column : std::size_t { id, x, y, z, radius, density, vx, vy, vz, wx, wy, wz };
 
-class Parser {
+class GranuleParser {
+  enum Column : std::size_t { id, x, y, z, radius, density, vx, vy, vz, wx, wy, wz };
+
 public:
-  explicit Parser(GranuleFile& result) : result_(result) {}
+  explicit GranuleParser(GranuleFile& result) : result_(result) {}
 
   void parse(std::string_view content) {
     skip_byte_order_mark(content);
@@ -134,7 +134,7 @@ private:
 
 GranuleFile parse_granules(const std::string& content) {
   GranuleFile result;
-  Parser(result).parse(content);
+  GranuleParser(result).parse(content);
   return result;
 }
 

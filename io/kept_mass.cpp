@@ -12,7 +12,7 @@ namespace grandamp {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double volume(double radius) {
   return 4.0 / 3.0 * pi * radius * radius * radius;

@@ -12,13 +12,13 @@ namespace grandamp {
 
 namespace {
 
-constexpr std::size_t most_faults = 20; // enough to see what is wrong with a file
 constexpr std::array<std::string_view, 7> words{"mass", "damping", "stiffness", "x", "y", "z", "force"};
-enum Word : std::size_t { mass, damping, stiffness, x, y, z, force };
 
-class Parser {
+class MatrixParser {
+  enum Word : std::size_t { mass, damping, stiffness, x, y, z, force };
+
 public:
-  explicit Parser(MatrixFile& result) : result_(result) {}
+  explicit MatrixParser(MatrixFile& result) : result_(result) {}
 
   void parse(std::string_view content, const Vector3& direction) {
     skip_byte_order_mark(content);
@@ -90,7 +90,7 @@ private:
 
 MatrixFile parse_matrices(const std::string& content, const Vector3& direction) {
   MatrixFile result;
-  Parser(result).parse(content, direction);
+  MatrixParser(result).parse(content, direction);
   return result;
 }
 

@@ -1,20 +1,18 @@
 #include "io/optimise_report.hpp"
 
 #include "io/case_pool.hpp"
+#include "io/json.hpp"
 #include "io/svg_plot.hpp"
 #include "io/sweep_table.hpp"
 #include "io/version.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
 namespace grandamp {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json number_json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);

@@ -1,17 +1,15 @@
 #include "io/plan_report.hpp"
 
+#include "io/json.hpp"
 #include "io/progress.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace grandamp {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A bed that is shaken, one core of an EPYC of the Zen 4 kind (perf/results); a bed at rest takes up to three times as
 // long.

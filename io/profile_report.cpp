@@ -1,12 +1,12 @@
 #include "io/profile_report.hpp"
 
-#include <nlohmann/json.hpp>
+#include "io/json.hpp"
 
 namespace grandamp {
 
 std::string trace_text(const Profile& profile) {
   constexpr double microseconds = 1e6;
-  nlohmann::ordered_json events = nlohmann::ordered_json::array();
+  Json events = Json::array();
   for (const Profile::Event& event : profile.events())
     events.push_back({{"name", phase_names[static_cast<std::size_t>(event.phase)]},
                       {"ph", "X"},
@@ -14,7 +14,7 @@ std::string trace_text(const Profile& profile) {
                       {"dur", microseconds * (event.end - event.begin)},
                       {"pid", 1},
                       {"tid", event.lane + 1}});
-  return nlohmann::ordered_json{{"traceEvents", events}, {"displayTimeUnit", "ns"}}.dump() + "\n";
+  return Json{{"traceEvents", events}, {"displayTimeUnit", "ns"}}.dump() + "\n";
 }
 
 } // namespace grandamp

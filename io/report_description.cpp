@@ -1,3 +1,4 @@
+#include "io/json.hpp"
 #include "io/progress.hpp"
 #include "io/report_data.hpp"
 #include "io/report_run.hpp"
@@ -90,7 +91,7 @@ private:
   std::string html_;
 };
 
-std::string joined(const nlohmann::ordered_json& names) {
+std::string joined(const Json& names) {
   std::string text;
   for (const auto& name : names)
     if (name.is_string()) text += (text.empty() ? "" : ", ") + name.get<std::string>();
@@ -157,8 +158,8 @@ void add_description(Page& page, const RunFacts& run) {
                            fmt::format("{:.3g} g at most, the bare enclosure", run.plan->damper.acceleration));
   }
   if (!run.summary.is_null()) {
-    entries.emplace_back("Effects", joined(run.summary.value("effects", nlohmann::ordered_json::array())));
-    entries.emplace_back("Left out", joined(run.summary.value("effects_left_out", nlohmann::ordered_json::array())));
+    entries.emplace_back("Effects", joined(run.summary.value("effects", Json::array())));
+    entries.emplace_back("Left out", joined(run.summary.value("effects_left_out", Json::array())));
   } else if (run.plan) {
     entries.emplace_back("Effects", fmt::format("{}", fmt::join(run.plan->effects, ", ")));
     entries.emplace_back("Left out", fmt::format("{}", fmt::join(run.plan->effects_left_out, ", ")));

@@ -11,8 +11,6 @@
 namespace grandamp::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Mechanism {
   const char* column;
   const char* name;

@@ -1,5 +1,6 @@
 #include "io/report_files.hpp"
 
+#include "io/json.hpp"
 #include "solver/errors.hpp"
 
 #include <fmt/chrono.h>
@@ -14,7 +15,6 @@ namespace grandamp::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 std::vector<std::string> fields_of(const std::string& line) {
   std::vector<std::string> fields(1);

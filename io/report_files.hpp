@@ -1,7 +1,7 @@
 // What a report reads beside results.h5. Internal to io.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include "io/json.hpp"
 
 #include <filesystem>
 #include <limits>
@@ -14,14 +14,14 @@ namespace grandamp::report {
 inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// A number of a JSON object by its path ("structure/amplitude"); NaN where there is none.
-double number(const nlohmann::ordered_json& json, std::string_view path);
+double number(const Json& json, std::string_view path);
 /// The same for a key with dots or slashes in it.
-double number_of(const nlohmann::ordered_json& object, const std::string& key);
+double number_of(const Json& object, const std::string& key);
 /// A text by its path; empty where there is none.
-std::string text(const nlohmann::ordered_json& json, std::string_view path);
+std::string text(const Json& json, std::string_view path);
 
 /// A JSON object that has these members, each an array. Throws FileError.
-nlohmann::ordered_json read_json(const std::filesystem::path& file, const std::vector<std::string>& arrays = {});
+Json read_json(const std::filesystem::path& file, const std::vector<std::string>& arrays = {});
 
 /// Columns of numbers; what is no number is NaN.
 struct CsvColumns {
@@ -35,6 +35,6 @@ CsvColumns read_csv(const std::filesystem::path& file);
 /// When a file was last written, UTC; empty if that is not known.
 std::string time_of(const std::filesystem::path& file);
 /// The title, or without one the folder's name.
-std::string title_of(const nlohmann::ordered_json& json, const std::filesystem::path& folder);
+std::string title_of(const Json& json, const std::filesystem::path& folder);
 
 } // namespace grandamp::report

@@ -1,4 +1,5 @@
 // The granules in three dimensions: positions in 16 bits, colours in 8, picture by picture.
+#include "io/json.hpp"
 #include "io/report_data.hpp"
 #include "io/report_histories.hpp"
 #include "io/report_still.hpp"
@@ -11,8 +12,6 @@
 
 namespace grandamp::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Granules times pictures that a page carries; more snapshots are left out evenly.
 constexpr std::size_t most_places = 3'000'000;

@@ -1,4 +1,5 @@
 #include "io/report_histories.hpp"
+#include "io/json.hpp"
 #include "io/report_data.hpp"
 
 #include <fmt/format.h>
@@ -8,8 +9,6 @@
 
 namespace grandamp::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t rows_of_a_picture = 1400;
 

@@ -1,4 +1,5 @@
 // The page of a search for a design.
+#include "io/json.hpp"
 #include "io/report_data.hpp"
 #include "io/report_files.hpp"
 #include "io/report_histories.hpp"
@@ -13,7 +14,6 @@ namespace grandamp::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 class OptimisePage {
 public:

@@ -1,5 +1,6 @@
 #include "io/report_page.hpp"
 
+#include "io/json.hpp"
 #include "io/report_assets.hpp"
 #include "io/report_data.hpp"
 #include "io/text_file.hpp"
@@ -13,8 +14,6 @@
 
 namespace grandamp::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// {{name}} by its value; values are not looked into.
 std::string filled(std::string_view form, const std::map<std::string_view, std::string>& values) {

@@ -2,10 +2,9 @@
 // the numbers that they are drawn from. Internal to io.
 #pragma once
 
+#include "io/json.hpp"
 #include "io/markup.hpp"
 #include "io/svg_plot.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <cstddef>
 #include <filesystem>
@@ -18,7 +17,7 @@
 namespace grandamp::report {
 
 /// JSON that cannot end the script element that it stands in.
-std::string embedded(const nlohmann::ordered_json& json);
+std::string embedded(const Json& json);
 
 /// All cells are text, not HTML; the first of a row is its header.
 std::string table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
@@ -28,12 +27,12 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 std::string facts(const Facts& entries);
 
 struct Figure {
-  std::string name;            ///< of its picture: letters, digits and underscores
-  std::string title;           ///< text
-  std::string caption;         ///< text, may be empty
-  std::string svg;             ///< the still picture
-  nlohmann::ordered_json live; ///< what the script draws in its place, by "kind"; null: nothing
-  std::string numbers;         ///< HTML: the same as a table
+  std::string name;    ///< of its picture: letters, digits and underscores
+  std::string title;   ///< text
+  std::string caption; ///< text, may be empty
+  std::string svg;     ///< the still picture
+  Json live;           ///< what the script draws in its place, by "kind"; null: nothing
+  std::string numbers; ///< HTML: the same as a table
 };
 
 /// Both pictures of a plot: SVG, and the same for the script.
@@ -49,7 +48,7 @@ public:
   void add(Figure figure);
   /// Bytes for the script, by name.
   void add_data(std::string_view name, std::span<const std::byte> bytes);
-  nlohmann::ordered_json& facts() { return script_facts_; }
+  Json& facts() { return script_facts_; }
 
   /// The whole page.
   std::string text() const;
@@ -60,7 +59,7 @@ private:
   std::string title_, subtitle_, body_, contents_, data_;
   bool in_section_ = false;
   std::vector<Figure> figures_;
-  nlohmann::ordered_json script_facts_ = nlohmann::ordered_json::object();
+  Json script_facts_ = Json::object();
 };
 
 } // namespace grandamp::report

@@ -1,4 +1,5 @@
 // How the structure moves: its histories, and the amplitude cycle by cycle.
+#include "io/json.hpp"
 #include "io/report_data.hpp"
 #include "io/report_histories.hpp"
 
@@ -10,8 +11,6 @@
 
 namespace grandamp::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Of rows first to last, one past: half the peak-to-peak.
 double half_swing(const std::vector<double>& values, std::size_t first, std::size_t last) {

@@ -1,6 +1,7 @@
 // What is known of a run, and the parts of its page. Internal to io.
 #pragma once
 
+#include "io/json.hpp"
 #include "io/report_files.hpp"
 #include "io/report_page.hpp"
 #include "io/results.hpp"
@@ -22,7 +23,7 @@ struct RunFacts {
   ~RunFacts() = default;
 
   std::filesystem::path folder;
-  nlohmann::ordered_json summary; ///< null: the run has none; it still goes on, or was killed
+  Json summary; ///< null: the run has none; it still goes on, or was killed
   std::string scene_text;
   std::optional<Scene> scene; ///< empty: this version does not read it
   std::optional<Plan> plan;

@@ -14,7 +14,7 @@
 namespace grandamp::report {
 namespace {
 
-constexpr double width = 640.0, height = 520.0, top = 36.0, margin = 14.0;
+constexpr double page_width = 640.0, page_height = 520.0, top = 36.0, margin = 14.0;
 
 /// From a corner, a little from above; x to the right and y away on the picture, z nearer to the eye.
 Vector3 turned(const Vector3& p) {
@@ -36,9 +36,10 @@ public:
         high[k] = std::max(high[k], p[k]);
       }
     }
-    scale_ = std::min((width - 2.0 * margin) / (high[0] - low[0]), (height - top - margin) / (high[1] - low[1]));
-    x_ = 0.5 * (width - scale_ * (low[0] + high[0]));
-    y_ = 0.5 * (top + height - margin + scale_ * (low[1] + high[1]));
+    scale_ =
+        std::min((page_width - 2.0 * margin) / (high[0] - low[0]), (page_height - top - margin) / (high[1] - low[1]));
+    x_ = 0.5 * (page_width - scale_ * (low[0] + high[0]));
+    y_ = 0.5 * (top + page_height - margin + scale_ * (low[1] + high[1]));
   }
   /// Pixels; the third is the distance towards the eye.
   Vector3 at(const Vector3& p) const {
@@ -54,16 +55,17 @@ private:
 /// Takes discs from the nearest on, and tells which still show.
 class Cover {
 public:
-  Cover() : taken_(static_cast<std::size_t>(width * height), 0) {}
+  Cover() : taken_(static_cast<std::size_t>(page_width * page_height), 0) {}
   bool shows(const Vector3& centre, double radius) {
     bool shown = false;
     const auto within = [](double value, double most) { return static_cast<int>(std::clamp(value, 0.0, most)); };
-    const int y1 = within(centre[1] + radius + 1.0, height - 1.0), x1 = within(centre[0] + radius + 1.0, width - 1.0);
-    for (int y = within(centre[1] - radius, height - 1.0); y <= y1; ++y)
-      for (int x = within(centre[0] - radius, width - 1.0); x <= x1; ++x) {
+    const int y1 = within(centre[1] + radius + 1.0, page_height - 1.0),
+              x1 = within(centre[0] + radius + 1.0, page_width - 1.0);
+    for (int y = within(centre[1] - radius, page_height - 1.0); y <= y1; ++y)
+      for (int x = within(centre[0] - radius, page_width - 1.0); x <= x1; ++x) {
         if (std::hypot(x - centre[0], y - centre[1]) > radius) continue;
         std::uint8_t& pixel =
-            taken_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+            taken_[static_cast<std::size_t>(y) * static_cast<std::size_t>(page_width) + static_cast<std::size_t>(x)];
         shown = shown || pixel == 0;
         pixel = 1;
       }
@@ -147,7 +149,7 @@ std::string granules_picture(const std::string& title, const Enclosure& enclosur
                   R"(font-family="sans-serif" font-size="13"><rect width="100%" height="100%" fill="white"/>)"
                   R"(<text x="{2:g}" y="20" text-anchor="middle">{3}</text>)"
                   "\n",
-                  width, height, 0.5 * width, escaped(title));
+                  page_width, page_height, 0.5 * page_width, escaped(title));
   const auto line = [&](std::size_t k, const char* style) {
     const Vector3 a = picture.at(edges[k]), b = picture.at(edges[k + 1]);
     svg += fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" {}/>\n", a[0], a[1], b[0], b[1], style);

@@ -1,5 +1,6 @@
 #include "io/report_study.hpp"
 
+#include "io/json.hpp"
 #include "io/report_files.hpp"
 #include "io/report_histories.hpp"
 #include "io/study_statistics.hpp"
@@ -14,8 +15,6 @@
 namespace grandamp::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Group {
   const char* name;
   const char* colour;
@@ -24,11 +23,6 @@ constexpr std::array groups{Group{"steps", colour::blue},      Group{"integrator
                             Group{"precision", colour::green}, Group{"policy", colour::purple},
                             Group{"skin", colour::sky},        Group{"friction", colour::orange},
                             Group{"stiffness", colour::grey}};
-
-std::string in_words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
 
 bool was_run(const Json& setting) {
   return number(setting, "runs") > 0.0;

@@ -1,5 +1,6 @@
 #include "io/report_sweep.hpp"
 
+#include "io/json.hpp"
 #include "io/report_data.hpp"
 #include "io/report_files.hpp"
 #include "io/report_histories.hpp"
@@ -16,7 +17,6 @@ namespace grandamp::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr std::array line_colours{colour::blue,   colour::vermilion, colour::green, colour::orange,
                                   colour::purple, colour::sky,       colour::grey};

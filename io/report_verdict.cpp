@@ -1,5 +1,6 @@
 #include "io/report_verdict.hpp"
 
+#include "io/json.hpp"
 #include "io/report_data.hpp"
 #include "solver/guards.hpp"
 
@@ -10,8 +11,6 @@
 
 namespace grandamp::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string percent(double share) {
   return fmt::format("{:.2g} %", 100.0 * share);

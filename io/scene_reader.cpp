@@ -1,5 +1,7 @@
 #include "io/scene_reader.hpp"
 
+#include "solver/measures.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -37,12 +39,6 @@ void read_enclosure(TableReader& root, Scene& scene) {
 double least_width(const Enclosure& enclosure) {
   if (enclosure.shape == EnclosureShape::cylinder) return std::min(enclosure.diameter, enclosure.height);
   return *std::min_element(enclosure.size.begin(), enclosure.size.end());
-}
-
-double volume_of(const Enclosure& enclosure) {
-  if (enclosure.shape == EnclosureShape::cylinder)
-    return std::numbers::pi / 4.0 * enclosure.diameter * enclosure.diameter * enclosure.height;
-  return enclosure.size[0] * enclosure.size[1] * enclosure.size[2];
 }
 
 double solid_volume(const Population& population) {

@@ -94,7 +94,7 @@ Spectra estimate_spectra(const EvenRecord& record, const Segmentation& segmentat
 }
 
 double hann_bias(double bandwidth, double segment) {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   const double decay = pi * bandwidth * segment;
   // What is missing of the correlation at a lag, a share u of the segment; without it the integral is 1 - exp(-decay).
   const auto missing = [](double u) {

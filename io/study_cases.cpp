@@ -1,5 +1,6 @@
 #include "io/study_cases.hpp"
 
+#include "io/json.hpp"
 #include "io/recorder.hpp"
 #include "io/study_start.hpp"
 #include "io/summary.hpp"
@@ -8,7 +9,6 @@
 #include "solver/team.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -23,7 +23,6 @@ namespace grandamp {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 /// A step of fewer granules is not worth sharing (solver/simulation.cpp): such cases run side by side instead.

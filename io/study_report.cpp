@@ -1,18 +1,16 @@
 #include "io/study_report.hpp"
 
+#include "io/json.hpp"
 #include "io/progress.hpp"
 #include "io/version.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace grandamp {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string percent(double value) {
   return fmt::format("{:.2g} %", 100.0 * value);
@@ -22,20 +20,10 @@ std::string signed_percent(double value) {
   return fmt::format("{:+.2g} %", 100.0 * value);
 }
 
-std::string in_words(const std::string& observable) {
-  std::string text = observable;
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
 std::string difference_text(const StudyDifference& difference) {
   if (std::isnan(difference.standard_error)) return signed_percent(difference.relative) + " (scatter not known)";
   return fmt::format("{} ± {}{}", signed_percent(difference.relative), percent(resolved_at * difference.standard_error),
                      difference.resolved() ? "" : ", not told from chance");
-}
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 /// The steps of the ladder, each with what the next finer one costs.
@@ -172,7 +160,7 @@ std::string StudyReport::json() const {
     for (const StudyDifference& difference : row.differences)
       one["observables"][difference.observable] = {{"mean", difference.mean},
                                                    {"difference", difference.relative},
-                                                   {"standard_error", number(difference.standard_error)},
+                                                   {"standard_error", json_number(difference.standard_error)},
                                                    {"resolved", difference.resolved()}};
     json["settings"].push_back(std::move(one));
   }

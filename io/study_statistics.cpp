@@ -113,6 +113,11 @@ bool eligible(const StudyRow& row) {
 
 } // namespace
 
+std::string in_words(std::string observable) {
+  std::replace(observable.begin(), observable.end(), '_', ' ');
+  return observable;
+}
+
 bool is_main(const std::string& observable) {
   return observable == "rms_displacement" || observable == "amplitude" || observable == "kinetic" ||
          observable == "dissipated";

@@ -48,6 +48,9 @@ struct StudyTable {
   int seeds = 0; ///< most that any setting has
 };
 
+/// An observable as it is read: "kinetic_energy" as "kinetic energy".
+std::string in_words(std::string observable);
+
 /// Observables that a setting is judged by: the structure's rms and amplitude (without one: the granules' kinetic
 /// energy at the end), and all that contacts dissipate. The others are told beside them.
 bool is_main(const std::string& observable);

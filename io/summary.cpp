@@ -1,17 +1,14 @@
 #include "io/summary.hpp"
 
+#include "io/json.hpp"
 #include "io/version.hpp"
 #include "solver/several_modes.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace grandamp {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double total(const StoredEnergy& stored) {
   return stored.kinetic + stored.gravitational + stored.elastic + stored.structure;
@@ -58,10 +55,6 @@ Json structure_json(const RunRecord& record) {
   return structure;
 }
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json frequency_response_json(const FrequencyResponse& response) {
   const Spectra& spectra = response.spectra;
   Json told{{"method", name(response.method)},
@@ -72,8 +65,8 @@ Json frequency_response_json(const FrequencyResponse& response) {
             {"averages", spectra.segments},
             {"peak_frequency", spectra.frequency[response.peak]},
             {"peak_magnitude", std::abs(response.response[response.peak])},
-            {"mean_coherence", number(response.mean_coherence())},
-            {"random_error", number(response.mean_random_error())},
+            {"mean_coherence", json_number(response.mean_coherence())},
+            {"random_error", json_number(response.mean_random_error())},
             {"bias", response.bias}};
   if (response.fit.found)
     told["fit"] = {{"natural_frequency", response.fit.natural_frequency},

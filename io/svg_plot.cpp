@@ -12,7 +12,6 @@ namespace grandamp {
 
 namespace {
 
-constexpr double width = 640.0, height = 420.0;
 constexpr double left = 72.0, right = 20.0, top = 36.0, bottom = 52.0;
 
 /// Values to places along one side of the frame.
@@ -68,7 +67,7 @@ private:
 
 class Drawing {
 public:
-  Drawing(const Plot& plot) : plot_(plot), x_(plot.x, left, width - right), y_(plot.y, height - bottom, top) {
+  Drawing(const Plot& plot) : plot_(plot), x_(plot.x, left, plot_width - right), y_(plot.y, plot_height - bottom, top) {
     for (const PlotSeries& series : plot.series)
       for (const PlotPoint& point : series.points) {
         if (!shown(point)) continue;
@@ -89,8 +88,8 @@ public:
     out_ =
         fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:g} {1:g}" width="{0:g}" height="{1:g}" )"
                     R"(font-family="sans-serif" font-size="11"><rect width="100%" height="100%" fill="white"/>)",
-                    width, height);
-    write(0.5 * width, 20.0, plot_.title, R"(text-anchor="middle" font-size="13")");
+                    plot_width, plot_height);
+    write(0.5 * plot_width, 20.0, plot_.title, R"(text-anchor="middle" font-size="13")");
     frame();
     for (const PlotSeries& series : plot_.series) draw(series);
     legend();
@@ -119,14 +118,15 @@ private:
     if (rows == 0) return;
     const double reach = 30.0 + 5.8 * static_cast<double>(longest);
     const bool to_left = plot_.legend_left;
-    out_ += fmt::format(
-        R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="white" fill-opacity="0.8"/>)",
-        to_left ? left + 1.0 : width - right - reach, top + 1.0, reach - 1.0, 15.0 * static_cast<double>(rows) + 6.0);
+    out_ +=
+        fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="white" fill-opacity="0.8"/>)",
+                    to_left ? left + 1.0 : plot_width - right - reach, top + 1.0, reach - 1.0,
+                    15.0 * static_cast<double>(rows) + 6.0);
     double y = top + 14.0;
     for (const PlotSeries& series : plot_.series) {
       if (series.name.empty()) continue;
-      mark(to_left ? left + 12.0 : width - right - 12.0, y - 4.0, series);
-      write(to_left ? left + 22.0 : width - right - 22.0, y, series.name,
+      mark(to_left ? left + 12.0 : plot_width - right - 12.0, y - 4.0, series);
+      write(to_left ? left + 22.0 : plot_width - right - 22.0, y, series.name,
             to_left ? R"(text-anchor="start")" : R"(text-anchor="end")");
       y += 15.0;
     }
@@ -136,30 +136,30 @@ private:
     if (plot_.band) {
       const double from = x_.at((*plot_.band)[0]), to = x_.at((*plot_.band)[1]);
       out_ += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#eef3f8\"/>\n",
-                          from, top, to - from, height - top - bottom);
+                          from, top, to - from, plot_height - top - bottom);
     }
     for (const double tick : y_.ticks()) {
-      line(left, y_.at(tick), width - right, y_.at(tick), "#dddddd", 0.7);
+      line(left, y_.at(tick), plot_width - right, y_.at(tick), "#dddddd", 0.7);
       write(left - 6.0, y_.at(tick) + 4.0, fmt::format("{:g}", tick), R"(text-anchor="end")");
     }
     if (plot_.categories.empty())
       for (const double tick : x_.ticks()) {
-        line(x_.at(tick), top, x_.at(tick), height - bottom, "#dddddd", 0.7);
-        write(x_.at(tick), height - bottom + 16.0, fmt::format("{:g}", tick), R"(text-anchor="middle")");
+        line(x_.at(tick), top, x_.at(tick), plot_height - bottom, "#dddddd", 0.7);
+        write(x_.at(tick), plot_height - bottom + 16.0, fmt::format("{:g}", tick), R"(text-anchor="middle")");
       }
     for (std::size_t k = 0; k < plot_.categories.size(); ++k)
-      write(place(k), height - bottom + 16.0, plot_.categories[k], R"(text-anchor="middle")");
+      write(place(k), plot_height - bottom + 16.0, plot_.categories[k], R"(text-anchor="middle")");
     out_ +=
         fmt::format("<rect x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\" fill=\"none\" stroke=\"#666666\"/>\n",
-                    left, top, width - left - right, height - top - bottom);
-    write(0.5 * (left + width - right), height - 14.0, plot_.x.name, R"(text-anchor="middle")");
+                    left, top, plot_width - left - right, plot_height - top - bottom);
+    write(0.5 * (left + plot_width - right), plot_height - 14.0, plot_.x.name, R"(text-anchor="middle")");
     out_ += fmt::format("<text transform=\"translate(16 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-                        0.5 * (top + height - bottom), escaped(plot_.y.name));
+                        0.5 * (top + plot_height - bottom), escaped(plot_.y.name));
   }
 
   /// The middle of the bar of that number.
   double place(std::size_t k) const {
-    const double share = (width - left - right) / static_cast<double>(plot_.categories.size());
+    const double share = (plot_width - left - right) / static_cast<double>(plot_.categories.size());
     return left + share * (static_cast<double>(k) + 0.5);
   }
 
@@ -195,7 +195,7 @@ private:
   /// Right of x, or left of it where the picture ends; left out where it would lie on another one.
   void label(double at, double y, const std::string& text) {
     const double reach = 5.0 * static_cast<double>(text.size());
-    const double x = at + 6.0 + reach < width - right ? at + 6.0 : at - 6.0 - reach;
+    const double x = at + 6.0 + reach < plot_width - right ? at + 6.0 : at - 6.0 - reach;
     for (const auto& [left_end, right_end, height_there] : labels_)
       if (x < right_end && left_end < x + reach && std::abs(y - height_there) < 9.0) return;
     labels_.push_back({x, x + reach, y});
@@ -203,12 +203,12 @@ private:
   }
 
   void bars(const PlotSeries& series) {
-    const double half = 0.3 * (width - left - right) / static_cast<double>(plot_.categories.size());
+    const double half = 0.3 * (plot_width - left - right) / static_cast<double>(plot_.categories.size());
     for (std::size_t k = 0; k < series.points.size(); ++k) {
       const PlotPoint& point = series.points[k];
       const double y = y_.at(point.y);
       out_ += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n",
-                          place(k) - half, y, 2.0 * half, height - bottom - y, series.colour);
+                          place(k) - half, y, 2.0 * half, plot_height - bottom - y, series.colour);
       if (point.high > point.low) line(place(k), y_.at(point.low), place(k), y_.at(point.high), "#222222", 1.2);
       write(place(k), y - 5.0, point.label, R"(text-anchor="middle")");
     }

@@ -9,6 +9,9 @@
 
 namespace grandamp {
 
+/// The room of a plot, in units of its SVG.
+inline constexpr double plot_width = 640.0, plot_height = 420.0;
+
 struct PlotPoint {
   double x = 0.0, y = 0.0;
   double low = 0.0, high = 0.0; ///< bar of error, if high > low

@@ -11,7 +11,7 @@ namespace grandamp {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 const std::vector<double>* column(const History& history, std::string_view name) {
   for (std::size_t k = 0; k < history.names.size(); ++k)

@@ -1,10 +1,10 @@
 #include "io/sweep_folder.hpp"
 
 #include "io/case_pool.hpp"
+#include "io/json.hpp"
 #include "io/run.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -19,7 +19,6 @@ namespace grandamp {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 Json json_of(const FolderIdentity& identity) {
   Json json{{"command", identity.command}};
@@ -52,7 +51,7 @@ std::vector<std::string> differences(const Json& there, const FolderIdentity& he
   return found;
 }
 
-std::string in_words(const std::string& command) {
+std::string in_a_sentence(const std::string& command) {
   return command == "optimise" ? "optimisation" : command;
 }
 
@@ -67,7 +66,7 @@ void demand_the_same(const fs::path& folder, const fs::path& mark, const FolderI
       there.is_object() ? differences(there, identity) : std::vector<std::string>{mark.string() + " is damaged"};
   if (found.empty()) return;
   throw UsageError(fmt::format("{}: holds another {} ({}); choose another folder with -o, or replace it with --force",
-                               folder.string(), in_words(identity.command), fmt::join(found, "; ")));
+                               folder.string(), in_a_sentence(identity.command), fmt::join(found, "; ")));
 }
 
 /// A folder that is not there yet, or empty, or that --force lets be added to; never one of a run or another command.
@@ -81,7 +80,7 @@ void demand_room(const fs::path& folder, const std::string& command, bool force)
                             file == "study.toml" || file.ends_with(".of.json");
     if (!force || of_another)
       throw UsageError(fmt::format("{}: holds something that is no {} ({}); choose another folder with -o{}",
-                                   folder.string(), in_words(command), file,
+                                   folder.string(), in_a_sentence(command), file,
                                    of_another ? "" : ", or add to it with --force"));
   }
 }

@@ -1,9 +1,9 @@
 #include "io/sweep_table.hpp"
 
+#include "io/json.hpp"
 #include "io/version.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,12 +11,6 @@
 namespace grandamp {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 Json value_json(const VaryValue& value) {
   return value.number ? Json(*value.number) : Json(value.text);
@@ -29,7 +23,7 @@ Json run_json(const CaseRun& run) {
             {"exit_status", run.state.exit_status},
             {"error", run.state.error}};
   Json& numbers = json["numbers"] = Json::object();
-  for (const std::string& one : run.numbers.names()) numbers[one] = number(run.numbers.at(one));
+  for (const std::string& one : run.numbers.names()) numbers[one] = json_number(run.numbers.at(one));
   return json;
 }
 
@@ -155,8 +149,8 @@ std::string SweepTable::json() const {
     Json mean = Json::object(), error = Json::object();
     for (const std::string& one : names)
       if (const MeanAndError* found = results[k].find(one)) {
-        mean[one] = number(found->mean);
-        error[one] = number(found->error);
+        mean[one] = json_number(found->mean);
+        error[one] = json_number(found->error);
       }
     point["mean"] = std::move(mean);
     point["error"] = std::move(error);

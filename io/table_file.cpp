@@ -11,12 +11,11 @@ namespace grandamp {
 
 namespace {
 
-constexpr std::size_t most_faults = 20; // enough to see what is wrong with a file
 constexpr std::array<std::string_view, 3> quantities{"force", "displacement", "acceleration"};
 
-class Parser {
+class TableParser {
 public:
-  explicit Parser(TableFile& result) : result_(result) {}
+  explicit TableParser(TableFile& result) : result_(result) {}
 
   void parse(std::string_view content) {
     skip_byte_order_mark(content);
@@ -76,7 +75,7 @@ private:
 
 TableFile parse_table(const std::string& content) {
   TableFile result;
-  Parser(result).parse(content);
+  TableParser(result).parse(content);
   return result;
 }
 

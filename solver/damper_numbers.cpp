@@ -11,7 +11,7 @@ namespace grandamp {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// At the rows of a table of motion, m/s^2.
 double largest_acceleration(const Excitation& table) {

@@ -14,7 +14,7 @@ namespace grandamp {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr Eigen::Index cubic_size = 4, quintic_size = 6, sine_size = 2;
 
 /// Gauss-Legendre on [0, 1], exact to the seventh degree.

@@ -12,7 +12,7 @@ namespace grandamp {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// `factor` times the instant without its whole part: as good after 10^9 cycles as in the first.

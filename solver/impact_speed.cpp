@@ -14,7 +14,7 @@ namespace grandamp {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double least = 0.01; // m/s
 
 /// Largest speed of the enclosure without granules over the run, and largest change from its first one, m/s.

@@ -11,7 +11,7 @@ namespace grandamp {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// Tells the phases apart from what else a scene's seed is for.
 constexpr std::uint64_t phase_stream = 0x51b7c0de00000000ULL;
 /// A band that ends on a multiple of 1/period but for rounding includes it.

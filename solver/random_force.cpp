@@ -11,7 +11,7 @@ namespace grandamp {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// Tells the phases apart from what else a scene's seed is for.
 constexpr std::uint64_t phase_stream = 0x9d3c5a7e00000000ULL;
 

@@ -17,7 +17,7 @@ namespace grandamp {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Some granules of about one radius: none of them is lighter than `mass` or larger than `radius`.
 struct GranuleClass {

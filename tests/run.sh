@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what the tests need, builds, and runs every test; the last line is the sum: "N passed, N failed".
-#   bash tests/run.sh          half an hour on two cores, or more where they are shared
+#   bash tests/run.sh          about 25 minutes on two cores, or more where they are shared
 #   bash tests/run.sh --full   the long forms too, and every test under the sanitizers
 # What each check printed is in build/checks/.
 set -uo pipefail
@@ -97,11 +97,6 @@ format() {
   git ls-files -co --exclude-standard -- '*.cpp' '*.hpp' | xargs -r ls -d 2>/dev/null | xargs clang-format-14 --dry-run -Werror
 }
 
-# The units of the instruction sets instantiate the same templates; one of them stands for all.
-tidy() {
-  run-clang-tidy-14 -p build -j "$jobs" -quiet "$PWD/(kernels|solver|io)/(?!kernels_(generic|avx512|avx2_(candidates|none|energies|ledger\\.))).*\.cpp$"
-}
-
 # They are built last; a mistake in one should not take an hour to show.
 fuzz_syntax() {
   local source
@@ -155,7 +150,7 @@ if [ "$(uname -m)" = x86_64 ]; then
   check portable_symbols bash tests/portability/check_symbols.sh build
   check old_processor bash tests/portability/check_old_processor.sh build
 fi
-check tidy tidy
+check tidy bash tests/tidy/check.sh build
 targets=(grandamp_program test_kernels test_solver test_io)
 [ $full -eq 1 ] && targets=()
 check build_sanitize build sanitize && cases sanitized build-sanitize "$sanitized"
