@@ -72,6 +72,15 @@ struct Name {
 Placement lay_out(const Scene& scene, Spheres& spheres, std::vector<Name>& names) {
   RandomNumbers random(scene.seed, 1);
   Placement placement;
+  const std::size_t count = granule_count(scene);
+  names.reserve(count);
+  spheres.position.reserve(count);
+  spheres.radius.reserve(count);
+  spheres.placed.reserve(count);
+  placement.mass.reserve(count);
+  placement.population.reserve(count);
+  placement.velocity.reserve(count);
+  placement.spin.reserve(count);
   for (std::size_t a = 0; a < scene.populations.size(); ++a) {
     const Population& population = scene.populations[a];
     for (std::size_t i = 0; i < population.count; ++i) {

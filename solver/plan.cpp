@@ -107,26 +107,45 @@ void choose_list(Plan& plan, const std::vector<RadiusCount>& sizes) {
   for (std::size_t k = 0; k < 3; ++k) plan.grid[static_cast<std::size_t>(shape.axis[k])] = shape.cells[k];
 }
 
-/// Rows of position, motion and force, ids and scratch of the sort, and the candidates of a list; some eight arrays of
-/// them, and seven of the ledger, on whole large pages (solver/row_array.hpp) where they are large.
+/// Granules listed in the scene: copies of it share them.
+double listed_bytes(const Scene& scene) {
+  std::size_t bytes = 0;
+  for (const Population& population : scene.populations)
+    bytes += sizeof(Vector3) * (population.positions.size() + population.velocities.size() + population.spins.size()) +
+             sizeof(double) * (population.radii.size() + population.masses.size());
+  return static_cast<double>(bytes);
+}
+
+/// At its most, which is as a run begins or saves its state. Rows of position, motion and force, ids and scratch of the
+/// sort, and the candidates of a list; some eight arrays of them, and seven of the ledger, on whole large pages
+/// (solver/row_array.hpp) where they are large.
 std::size_t estimate_memory(const Plan& plan) {
-  double bytes_per_granule = 32.0 + 64.0 + 64.0 + 8.0 + 36.0 + 16.0;
   if (plan.granules == 0) return 0;
+  const auto granules = static_cast<double>(plan.granules);
+  const bool ledger = plan.scene.output.energy, predicts = plan.scene.time.integrator == Integrator::verlet;
+  const bool springs = plan.scene.contact.friction == FrictionLaw::spring;
   constexpr double losses = 32.0, last_step = 64.0, losses_at_walls = 32.0 + 64.0 + 1.0, velocities = 64.0;
-  if (plan.scene.output.energy) bytes_per_granule += losses + 2.0 * (last_step + losses_at_walls);
-  if (plan.scene.time.integrator == Integrator::verlet) bytes_per_granule += 2.0 * velocities;
-  const double bytes_per_candidate = plan.scene.contact.friction == FrictionLaw::spring ? 8.0 + 36.0 : 8.0;
+  double steps = 32.0 + 64.0 + 64.0 + 8.0 + 36.0 + 16.0;
+  if (ledger) steps += losses + 2.0 * (last_step + losses_at_walls);
+  if (predicts) steps += 2.0 * velocities;
   // Half of the neighbours whose centres are within a mean diameter and the skin, at this solid fraction.
   const double reach = 1.0 + 0.5 * plan.skin / plan.mean_radius;
-  const double candidates =
-      std::min(0.5 * static_cast<double>(plan.granules), 4.0 * plan.damper.fill_fraction * reach * reach * reach);
+  const double candidates = std::min(0.5 * granules, 4.0 * plan.damper.fill_fraction * reach * reach * reach);
+  steps += (springs ? 8.0 + 36.0 : 8.0) * candidates;
+  // Where granules are put, and what the trial of the first step keeps for the step itself.
+  double start = 92.0 + 32.0 + 64.0;
+  if (predicts) start += velocities;
+  if (ledger) start += losses_at_walls;
+  // The fields of RunState, and one of them on its way to the file.
+  double saved = 5.0 + 24.0 + 16.0 + 48.0 + 24.0 + 24.0 + (springs ? 8.0 + 40.0 : 8.0) * candidates;
+  if (predicts) saved += 48.0;
+  if (ledger) saved += 24.0 + 8.0 + 8.0;
   constexpr double half_a_page = 1U << 20;
-  const double arrays = plan.scene.output.energy ? 15.0 : 8.0;
+  const double arrays = ledger ? 15.0 : 8.0;
   constexpr std::size_t large_arrays = (1U << 20) / sizeof(kernels::MotionRow);
   const double cells = static_cast<double>(plan.grid[0]) * plan.grid[1] * plan.grid[2];
-  return static_cast<std::size_t>(static_cast<double>(plan.granules) *
-                                      (bytes_per_granule + bytes_per_candidate * candidates) +
-                                  8.0 * cells + (plan.granules >= large_arrays ? arrays * half_a_page : 0.0));
+  return static_cast<std::size_t>(granules * (steps + std::max(start, saved)) + listed_bytes(plan.scene) + 8.0 * cells +
+                                  (plan.granules >= large_arrays ? arrays * half_a_page : 0.0));
 }
 
 void note(Plan& plan, std::string key, std::string message) {

@@ -44,7 +44,7 @@ struct Plan {
   bool skin_tuned = false;
   double cell = 0.0;                         ///< cell length asked for, m
   std::array<int, 3> grid{1, 1, 1};          ///< cells along x, y, z at the start
-  std::size_t memory = 0;                    ///< bytes, about
+  std::size_t memory = 0;                    ///< bytes at most, about
   std::vector<std::string> effects;          ///< chosen: "hertz", "tsuji", ...
   std::vector<std::string> effects_left_out; ///< not in the kernels of this run
   DamperNumbers damper;

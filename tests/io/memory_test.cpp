@@ -1,0 +1,111 @@
+// What `check` tells of a run's memory, held against what the run takes.
+#include "tests/io/io_support.hpp"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+using namespace grandamp::test;
+
+namespace {
+
+/// `arguments` of the program, each one word. Its largest resident set, bytes.
+double largest_memory(const TemporaryFolder& folder, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), GRANDAMP_PROGRAM);
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  const std::string place = folder.path().string();
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    if (chdir(place.c_str()) == 0) execv(words[0], words.data());
+    _exit(127);
+  }
+  int status = -1;
+  rusage usage{};
+  REQUIRE(wait4(child, &status, 0, &usage) == child);
+  REQUIRE(WIFEXITED(status));
+  REQUIRE(WEXITSTATUS(status) == 0);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+/// A lattice of 60 x 60 x 60 with gaps, at small random speeds; every eighth granule of another size if asked.
+std::string lattice(bool sizes) {
+  std::string text = sizes ? "x,y,z,vx,vy,vz,radius\n" : "x,y,z,vx,vy,vz\n";
+  for (int i = 0; i < 60 * 60 * 60; ++i) {
+    const int cells[3]{i % 60, i / 60 % 60, i / 3600};
+    for (const int cell : cells) text += std::to_string(0.005 * (cell + 0.5)) + ",";
+    text += std::to_string(0.01 * (i % 7 - 3)) + "," + std::to_string(0.01 * (i % 11 - 5)) + ",0";
+    if (sizes) text += i % 8 == 0 ? ",0.0023" : ",0.0016";
+    text += "\n";
+  }
+  return text;
+}
+
+constexpr const char* bed = R"(gravity = [0.0, 0.0, -9.81]
+
+[enclosure]
+shape = "box"
+size = [0.3, 0.3, 0.3]
+
+[[granules]]
+file = "bed.csv"
+density = 1190.0
+RADIUS
+
+[contact.granule]
+stiffness = 1.0e7
+reference_radius = 3.0e-3
+restitution = 0.89
+friction = 0.52
+
+[time]
+duration = 1.0e-4
+step = 4.0e-6
+impact_speed = 1.0
+)";
+
+} // namespace
+
+// A sanitizer's own memory is many times the program's.
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("check's memory is what a run takes at its most, within a fifth") {
+  struct Kind {
+    const char* name;
+    bool sizes;
+    std::vector<std::string> overrides;
+  };
+  const std::vector<Kind> kinds{
+      {"as it is", false, {}},
+      {"no ledger", false, {"output.energy=false"}},
+      {"springs", false, {"contact.friction=\"spring\"", "contact.granule.tangential_stiffness=8.0e6"}},
+      {"verlet", false, {"time.integrator=\"verlet\""}},
+      {"two sizes, no friction", true, {"contact.friction=\"none\"", "output.energy=false"}}};
+  for (const Kind& kind : kinds) {
+    const TemporaryFolder folder;
+    std::string scene = bed;
+    scene.replace(scene.find("RADIUS"), 6, kind.sizes ? "" : "radius = 2.3e-3");
+    if (kind.name == std::string("two sizes, no friction")) scene.erase(scene.find("friction = 0.52"), 15);
+    write_content(folder / "bed.toml", scene);
+    write_content(folder / "bed.csv", lattice(kind.sizes));
+    std::vector<std::string> arguments{"run", "bed.toml", "--quiet", "--threads", "1"};
+    std::string told = "check bed.toml --json";
+    for (const std::string& change : kind.overrides) {
+      arguments.insert(arguments.end(), {"--set", change});
+      told += " --set '" + change + "'";
+    }
+    const Outcome check = program(folder, told);
+    INFO(kind.name, ": ", check.errors);
+    REQUIRE(check.status == 0);
+    const auto memory = nlohmann::json::parse(check.output)["memory"].get<double>();
+    constexpr double program_alone = 14.0e6;
+    const double taken = largest_memory(folder, arguments) - program_alone;
+    MESSAGE(std::string(kind.name), ": ", 1.0e-6 * memory, " MB told, ", 1.0e-6 * taken, " MB taken");
+    CHECK(memory == doctest::Approx(taken).epsilon(0.2));
+  }
+}
+#endif
