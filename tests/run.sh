@@ -137,7 +137,7 @@ need packages install_packages "${test_packages[@]}"
 check layering bash tests/layering/check.sh
 check format format
 check fuzz_syntax fuzz_syntax
-need build_release build release -DGRANDAMP_TESTS=ON
+need build_release build release -DGRANDAMP_TESTS=ON -DGRANDAMP_BENCHES=ON
 cases tests build .
 check package bash tests/package/check.sh build
 check report bash tests/report/check.sh build $logs/report

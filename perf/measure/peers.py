@@ -30,11 +30,11 @@ def plan(name):
     return steps, warm, skins, target, liggghts_target
 
 
-def peer(program, deck, data, name, skin, steps, warm, every=5):
-    """Runs a peer; its output and the process's own processor time, s."""
-    radius, box, time_step, shaken, gravity = SCENES[name]
+def peer(program, deck, data, scene, skin, steps, warm, every=5, **others):
+    """Runs a peer on a scene as SCENES has it; its output and the process's own processor time, s."""
+    radius, box, time_step, shaken, gravity = scene
     values = {"data": data, "step": time_step, "box_x": box[0], "box_y": box[1], "box_z": box[2], "skin": skin,
-              "every": every, "warm": warm, "steps": steps, "gravity": gravity, "shaken": int(shaken)}
+              "every": every, "warm": warm, "steps": steps, "gravity": gravity, "shaken": int(shaken), **others}
     command = [program, "-in", str(deck), "-log", "none"]
     for key, value in values.items():
         command += ["-var", key, str(value)]
@@ -44,7 +44,11 @@ def peer(program, deck, data, name, skin, steps, warm, every=5):
 
 def lammps(name, skin, steps, warm):
     """Microseconds of processor time per step: LAMMPS's own loop time and its share of the processor in it."""
-    text, _ = peer("lmp", perf / "peers" / "shaken_box.lammps", states.data_file(name, 1), name, skin, steps, warm)
+    return lammps_time(states.data_file(name, 1), SCENES[name], skin, steps, warm)
+
+
+def lammps_time(data, scene, skin, steps, warm, **others):
+    text, _ = peer("lmp", perf / "peers" / "shaken_box.lammps", data, scene, skin, steps, warm, **others)
     timed = text[text.rindex("Loop time"):]
     seconds, done = found(r"Loop time of (\S+) on 1 procs for (\d+) steps", timed)
     (share,) = found(r"([\d.]+)% CPU use", timed)
@@ -59,8 +63,8 @@ def lammps(name, skin, steps, warm):
 def liggghts(name, skin, steps, warm):
     """It tells no share of the processor: the process's time less that of a run that only warms up."""
     deck, data = perf / "peers" / "shaken_box.liggghts", states.data_file(name, 2)
-    _, whole = peer("liggghts", deck, data, name, skin, steps, warm)
-    _, start = peer("liggghts", deck, data, name, skin, 0, warm)
+    _, whole = peer("liggghts", deck, data, SCENES[name], skin, steps, warm)
+    _, start = peer("liggghts", deck, data, SCENES[name], skin, 0, warm)
     return {"us": 1e6 * (whole - start) / steps}
 
 

@@ -143,10 +143,15 @@ def general(name):
 def data_file(name, types):
     """The state as a data file of LAMMPS (one type of atom) or LIGGGHTS (two: granules and walls)."""
     scene(name)
+    _, box, _, shaken, _ = SCENES[name]
+    return write_data(name, types, box, shaken)
+
+
+def write_data(name, types, box, shaken):
+    """The same of any state in NAME.csv."""
     file = states / f"{name}.data{types}"
     if file.exists():
         return file
-    _, box, _, shaken, _ = SCENES[name]
     state = read_csv(name)
     if shaken:
         state[:, 5] -= START_SPEED
