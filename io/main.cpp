@@ -7,8 +7,10 @@
 
 int main(int argc, char** argv) {
 #ifdef __GLIBC__
-  // Left to itself the limit rises with the blocks that are freed, and the room of a file once read is never given back.
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  // Left to itself the first rises to the largest block ever freed, and what a file took to read is never given back.
+  // Lower, and every snapshot asks the system for its room anew.
+  mallopt(M_MMAP_THRESHOLD, 8 << 20);
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
 #endif
   return grandamp::command_line(argc, argv);
 }

@@ -14,10 +14,6 @@ namespace grandamp {
 
 namespace {
 
-Json number_json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 std::string with_error(const MeanAndError& value) {
   return std::isnan(value.error) ? fmt::format("{:.4g} (scatter not known)", value.mean)
                                  : fmt::format("{:.4g} ± {:.2g}", value.mean, value.error);
@@ -36,17 +32,17 @@ Json evaluation_json(const Evaluation& one, std::size_t index, const std::vector
   json["overrides"] = one.design.overrides;
   json["granules"] = one.design.granules;
   json["granule_mass"] = one.design.granule_mass;
-  json["mean"] = number_json(one.result.mean);
-  json["standard_error"] = number_json(one.result.error);
+  json["mean"] = json_number(one.result.mean);
+  json["standard_error"] = json_number(one.result.error);
   json["all_seeds"] = {
-      {"count", one.all.count}, {"mean", number_json(one.all.mean)}, {"standard_error", number_json(one.all.error)}};
-  json["best_so_far"] = number_json(one.best_so_far);
+      {"count", one.all.count}, {"mean", json_number(one.all.mean)}, {"standard_error", json_number(one.all.error)}};
+  json["best_so_far"] = json_number(one.best_so_far);
   json["runs"] = Json::array();
   for (std::size_t k = 0; k < one.runs.size(); ++k)
     json["runs"].push_back({{"seed", one.runs[k].seed},
                             {"status", name(one.runs[k].state.status)},
                             {"folder", "runs/" + one.runs[k].job.folder.filename().string()},
-                            {"value", number_json(k < one.values.size() ? one.values[k] : std::nan(""))}});
+                            {"value", json_number(k < one.values.size() ? one.values[k] : std::nan(""))}});
   return json;
 }
 
@@ -116,7 +112,7 @@ std::string OptimiseReport::json() const {
   json["scene_as_it_is"] = scene != nullptr ? Json(scene - all.data()) : Json(nullptr);
   if (best != nullptr && scene != nullptr && best != scene) {
     const MeanAndError gain = DesignSearch::difference(*scene, *best);
-    json["difference"] = {{"mean", number_json(gain.mean)}, {"standard_error", number_json(gain.error)}};
+    json["difference"] = {{"mean", json_number(gain.mean)}, {"standard_error", json_number(gain.error)}};
   }
   json["evaluations"] = Json::array();
   for (std::size_t k = 0; k < all.size(); ++k)

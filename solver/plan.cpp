@@ -116,6 +116,14 @@ double listed_bytes(const Scene& scene) {
   return static_cast<double>(bytes);
 }
 
+/// Where the room is not known, as full as a bed.
+double fill_of_bed(const Plan& plan) {
+  const bool falls = plan.scene.gravity != Vector3{0.0, 0.0, 0.0};
+  const bool listed = std::any_of(plan.scene.populations.begin(), plan.scene.populations.end(),
+                                  [](const Population& population) { return population.placed; });
+  return falls || listed ? std::max(bed_solid_fraction, plan.damper.fill_fraction) : plan.damper.fill_fraction;
+}
+
 /// At its most, which is as a run begins or saves its state. Rows of position, motion and force, ids and scratch of the
 /// sort, and the candidates of a list; some eight arrays of them, and seven of the ledger, on whole large pages
 /// (solver/row_array.hpp) where they are large.
@@ -130,7 +138,7 @@ std::size_t estimate_memory(const Plan& plan) {
   if (predicts) steps += 2.0 * velocities;
   // Half of the neighbours whose centres are within a mean diameter and the skin, at this solid fraction.
   const double reach = 1.0 + 0.5 * plan.skin / plan.mean_radius;
-  const double candidates = std::min(0.5 * granules, 4.0 * plan.damper.fill_fraction * reach * reach * reach);
+  const double candidates = std::min(0.5 * granules, 4.0 * fill_of_bed(plan) * reach * reach * reach);
   steps += (springs ? 8.0 + 36.0 : 8.0) * candidates;
   // Where granules are put, and what the trial of the first step keeps for the step itself.
   double start = 92.0 + 32.0 + 64.0;
@@ -140,12 +148,18 @@ std::size_t estimate_memory(const Plan& plan) {
   double saved = 5.0 + 24.0 + 16.0 + 48.0 + 24.0 + 24.0 + (springs ? 8.0 + 40.0 : 8.0) * candidates;
   if (predicts) saved += 48.0;
   if (ledger) saved += 24.0 + 8.0 + 8.0;
-  constexpr double half_a_page = 1U << 20;
+  const std::vector<Population>& populations = plan.scene.populations;
+  const bool poured = plan.scene.packing == PackingKind::settled &&
+                      std::any_of(populations.begin(), populations.end(),
+                                  [](const Population& one) { return one.count > 0 && !one.placed; });
+  const double beside = poured ? start + saved : std::max(start, saved); // what is poured is saved as it lies
+  constexpr double half_a_page = 1U << 20, program = 20.0e6;
   const double arrays = ledger ? 15.0 : 8.0;
   constexpr std::size_t large_arrays = (1U << 20) / sizeof(kernels::MotionRow);
   const double cells = static_cast<double>(plan.grid[0]) * plan.grid[1] * plan.grid[2];
-  return static_cast<std::size_t>(granules * (steps + std::max(start, saved)) + listed_bytes(plan.scene) + 8.0 * cells +
-                                  (plan.granules >= large_arrays ? arrays * half_a_page : 0.0));
+  constexpr double allocator = 1.1; // what it keeps between blocks
+  return static_cast<std::size_t>(program + allocator * granules * (steps + beside) + listed_bytes(plan.scene) +
+                                  8.0 * cells + (plan.granules >= large_arrays ? arrays * half_a_page : 0.0));
 }
 
 void note(Plan& plan, std::string key, std::string message) {

@@ -2,6 +2,7 @@
 // run, and granules listed in it may be much of what a run holds.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <initializer_list>
 #include <memory>
@@ -10,39 +11,59 @@
 
 namespace grandamp {
 
-/// A std::vector by its names. Two threads may change two copies at a time, but not one of them.
+/// A std::vector by its names. What a list that is not const hands out may be written through, so from then on its
+/// copies are copies at once, until it is assigned to: fill a vector, and move it here.
 template <class T> class SharedList {
 public:
-  using value_type = T;
-  using iterator = typename std::vector<T>::iterator;
-  using const_iterator = typename std::vector<T>::const_iterator;
-
   SharedList() = default;
   SharedList(std::vector<T> values) : values_(std::make_shared<std::vector<T>>(std::move(values))) {}
   SharedList(std::initializer_list<T> values) : SharedList(std::vector<T>(values)) {}
+  SharedList(const SharedList& from)
+      : values_(from.lent_ && from.values_ ? std::make_shared<std::vector<T>>(*from.values_) : from.values_) {}
+  SharedList(SharedList&& from) noexcept : values_(std::move(from.values_)), lent_(std::exchange(from.lent_, false)) {}
+  SharedList& operator=(SharedList from) noexcept {
+    std::swap(values_, from.values_);
+    std::swap(lent_, from.lent_);
+    return *this;
+  }
+  ~SharedList() = default;
 
-  operator const std::vector<T>&() const noexcept { return all(); }
-  std::size_t size() const noexcept { return all().size(); }
-  bool empty() const noexcept { return all().empty(); }
-  const T& operator[](std::size_t i) const { return all()[i]; }
-  const T& front() const { return all().front(); }
-  const T& back() const { return all().back(); }
-  const_iterator begin() const noexcept { return all().begin(); }
-  const_iterator end() const noexcept { return all().end(); }
+  operator const std::vector<T>&() const& noexcept { return all(); }
+  operator std::vector<T>() && { return all(); }
+  std::size_t size() const noexcept { return values_ ? values_->size() : 0; }
+  bool empty() const noexcept { return size() == 0; }
+  const T& operator[](std::size_t i) const { return (*values_)[i]; }
+  const T& at(std::size_t i) const { return all().at(i); }
+  const T& front() const { return values_->front(); }
+  const T& back() const { return values_->back(); }
+  const T* data() const noexcept { return values_ ? values_->data() : nullptr; }
+  const T* begin() const noexcept { return data(); }
+  const T* end() const noexcept { return data() + size(); }
+  const T* cbegin() const noexcept { return begin(); }
+  const T* cend() const noexcept { return end(); }
 
-  T& operator[](std::size_t i) { return own()[i]; }
-  T& front() { return own().front(); }
-  T& back() { return own().back(); }
-  iterator begin() { return own().begin(); }
-  iterator end() { return own().end(); }
-  void clear() noexcept { values_.reset(); }
+  T& operator[](std::size_t i) { return lend()[i]; }
+  T& front() { return lend().front(); }
+  T& back() { return lend().back(); }
+  T* data() { return lend().data(); }
+  T* begin() { return data(); }
+  T* end() { return data() + size(); }
+  T* erase(const T* at) { return erase(at, at + 1); }
+  T* erase(const T* first, const T* last) {
+    const auto from = first - std::as_const(*this).begin(), to = last - std::as_const(*this).begin();
+    std::vector<T>& values = lend();
+    values.erase(values.begin() + from, values.begin() + to);
+    return values.data() + from;
+  }
+  void clear() noexcept { *this = SharedList(); }
+  void reserve(std::size_t size) { own().reserve(size); }
   void push_back(const T& value) { own().push_back(value); }
+  void pop_back() { own().pop_back(); }
   void resize(std::size_t size, const T& value = T{}) { own().resize(size, value); }
-  iterator erase(iterator at) { return own().erase(at); }
-  iterator erase(iterator first, iterator last) { return own().erase(first, last); }
   void assign(std::size_t size, const T& value) { *this = std::vector<T>(size, value); }
 
   friend bool operator==(const SharedList& a, const SharedList& b) { return a.all() == b.all(); }
+  friend bool operator==(const SharedList& a, const std::vector<T>& b) { return a.all() == b; }
 
 private:
   const std::vector<T>& all() const noexcept {
@@ -54,10 +75,18 @@ private:
       values_ = std::make_shared<std::vector<T>>();
     else if (values_.use_count() > 1)
       values_ = std::make_shared<std::vector<T>>(*values_);
+    else
+      std::atomic_thread_fence(std::memory_order_acquire); // another thread's copy may just have been made and let go
     return *values_;
+  }
+  std::vector<T>& lend() {
+    std::vector<T>& values = own();
+    lent_ = true;
+    return values;
   }
 
   std::shared_ptr<std::vector<T>> values_;
+  bool lent_ = false;
 };
 
 } // namespace grandamp

@@ -15,8 +15,8 @@ left_out='/kernels_(generic|avx512|avx2_(candidates|none|energies|ledger\.))'
 look() {
   local folder=$1 file=$2 found status=0
   shift 2
-  found=$(clang-tidy-14 -p "$folder" -quiet "$@" "$file" 2>/dev/null) || status=$?
-  [ $status -eq 0 ] || printf '%s\n' "$file" "$found"
+  found=$(clang-tidy-14 -p "$folder" -quiet "$@" "$file" 2>&1) || status=$?
+  [ $status -eq 0 ] || printf '%s\n' "$file" "$found" | grep -v ' warnings generated\.$'
   return $status
 }
 sources_of() { sed -n 's/^#include "\(.*\.cpp\)"$/\1/p' "$@"; }
@@ -27,6 +27,7 @@ look_at() {
     *) look "$build" "$1"; return ;;
   esac
   look $together "$1" -checks=-bugprone-suspicious-include -extra-arg=-Wno-shadow >/dev/null && return
+  echo "one by one: $1"
   local source status=0
   for source in $(sources_of "$1"); do look "$build" "$source" || status=1; done
   return $status
@@ -38,9 +39,21 @@ rm -rf $together
 cmake -S . -B $together -G Ninja -DCMAKE_BUILD_TYPE=Release -DGRANDAMP_TESTS=OFF \
   -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 >/dev/null || exit
 mapfile -t units < <(find $together/CMakeFiles -path '*/Unity/unity_*' | sort)
-mapfile -t alone < <(find "$PWD"/kernels "$PWD"/solver "$PWD"/io -name '*.cpp' |
-  grep -vxFf <(sources_of "${units[@]}") | grep -vE "$left_out" | sort)
+mapfile -t alone < <(sed -n 's|^ *"file": "\(.*\.cpp\)".*|\1|p' "$build"/compile_commands.json |
+  grep -E "^$PWD/(kernels|solver|io)/" | grep -vxFf <(sources_of "${units[@]}") | grep -vE "$left_out" | sort)
 echo "${#units[@]} units, ${#alone[@]} sources by themselves"
 [ ${#units[@]} -gt 0 ] && [ ${#alone[@]} -gt 0 ] || exit
 
-printf '%s\0' "${alone[@]}" "${units[@]}" | xargs -0 -P "$jobs" -I{} bash -c 'look_at "$1"' _ {}
+# misc-unused-using-decls looks at no source that is included.
+status=0
+for source in kernels/*.cpp solver/*.cpp io/*.cpp io/commands/*.cpp; do
+  for name in $(sed -n 's/^ *using [a-zA-Z0-9_:]*::\([a-zA-Z0-9_]*\);.*/\1/p' "$source"); do
+    if [ "$(grep -cw "$name" "$source")" -lt 2 ]; then
+      echo "$source: $name is declared by 'using' and not used"
+      status=1
+    fi
+  done
+done
+
+printf '%s\0' "${alone[@]}" "${units[@]}" | xargs -0 -P "$jobs" -I{} bash -c 'look_at "$1"' _ {} || status=1
+exit $status
