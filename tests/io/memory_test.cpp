@@ -1,4 +1,7 @@
 // What `check` tells of a run's memory, held against what the run takes.
+// A sanitizer's own memory is many times the program's.
+#ifndef __SANITIZE_ADDRESS__
+
 #include "tests/io/io_support.hpp"
 
 #include <doctest/doctest.h>
@@ -58,8 +61,6 @@ impact_speed = 1.0
 
 } // namespace
 
-// A sanitizer's own memory is many times the program's.
-#ifndef __SANITIZE_ADDRESS__
 TEST_CASE("check's memory is what a run takes at its most, within a fifth") {
   struct Kind {
     const char* name;
