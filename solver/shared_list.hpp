@@ -29,7 +29,7 @@ public:
   ~SharedList() = default;
 
   operator const std::vector<T>&() const& noexcept { return all(); }
-  operator std::vector<T>() && { return all(); }
+  operator const std::vector<T>&() const&& = delete; // of a temporary: it would outlive its list
   std::size_t size() const noexcept { return values_ ? values_->size() : 0; }
   bool empty() const noexcept { return size() == 0; }
   const T& operator[](std::size_t i) const { return (*values_)[i]; }
