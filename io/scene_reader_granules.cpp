@@ -112,7 +112,7 @@ private:
   void read_radius() {
     if (file_has(&GranuleFile::radii)) {
       table_.idle("radius", "the file has a column radius", "the file's own, or a file without that column");
-      population_.radius = *std::max_element(population_.radii.cbegin(), population_.radii.cend());
+      population_.radius = *std::max_element(population_.radii.begin(), population_.radii.end());
       return;
     }
     const bool faulty_file = file_ != nullptr && !file_->faults.empty();
@@ -152,18 +152,17 @@ private:
       population_.mass = mass_of(0, population_.radius);
       return;
     }
-    std::vector<double> masses(population_.count);
-    const SharedList<double>& radii = population_.radii;
-    for (std::size_t i = 0; i < masses.size(); ++i)
-      masses[i] = mass_of(i, radii.empty() ? population_.radius : radii[i]);
-    for (const double mass : masses)
+    population_.masses.resize(population_.count);
+    for (std::size_t i = 0; i < population_.count; ++i)
+      population_.masses[i] = mass_of(i, population_.radii.empty() ? population_.radius : population_.radii[i]);
+    for (const double mass : population_.masses)
       if (population_.radius > 0.0 && !(mass > 0.0 && std::isfinite(mass))) {
         table_.wrong("file", fmt::format("a granule of {} kg", mass), "masses that a number can hold");
         break;
       }
-    population_.mass = *std::max_element(masses.begin(), masses.end());
-    population_.masses = all_equal(masses) ? std::vector<double>{} : std::move(masses);
-    if (!radii.empty() && all_equal(radii)) population_.radii.clear();
+    population_.mass = *std::max_element(population_.masses.begin(), population_.masses.end());
+    if (all_equal(population_.masses)) population_.masses.clear();
+    if (!population_.radii.empty() && all_equal(population_.radii)) population_.radii.clear();
   }
 
   void read_count() {

@@ -34,9 +34,7 @@ void tile(Scene& scene, int along_x, int along_y) {
     clear(population.positions, population.velocities, population.spins, population.radii, population.masses);
     for (int x = 0; x < along_x; ++x)
       for (int y = 0; y < along_y; ++y) {
-        const auto append = [](auto& to, const auto& from) {
-          for (const auto& value : from) to.push_back(value);
-        };
+        const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
         for (const Vector3& p : one.positions)
           population.positions.push_back({p[0] + x * box[0], p[1] + y * box[1], p[2]});
         append(population.velocities, one.velocities);

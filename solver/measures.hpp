@@ -31,6 +31,12 @@ inline std::size_t granule_count(const Scene& scene) {
   return count;
 }
 
+/// Whether the packing has granules to place: such as are given by count.
+inline bool any_by_count(const Scene& scene) {
+  return std::any_of(scene.populations.begin(), scene.populations.end(),
+                     [](const Population& population) { return population.count > 0 && !population.placed; });
+}
+
 /// Of all granules, m^3.
 inline double solid_volume(const Scene& scene) {
   double volume = 0.0;

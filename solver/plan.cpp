@@ -107,59 +107,61 @@ void choose_list(Plan& plan, const std::vector<RadiusCount>& sizes) {
   for (std::size_t k = 0; k < 3; ++k) plan.grid[static_cast<std::size_t>(shape.axis[k])] = shape.cells[k];
 }
 
-/// Granules listed in the scene: copies of it share them.
+/// Granules listed in the scene: as they were read, and the plan's copy.
 double listed_bytes(const Scene& scene) {
   std::size_t bytes = 0;
   for (const Population& population : scene.populations)
     bytes += sizeof(Vector3) * (population.positions.size() + population.velocities.size() + population.spins.size()) +
              sizeof(double) * (population.radii.size() + population.masses.size());
-  return static_cast<double>(bytes);
+  return 2.0 * static_cast<double>(bytes);
 }
 
-/// Where the room is not known, as full as a bed.
-double fill_of_bed(const Plan& plan) {
-  const bool falls = plan.scene.gravity != Vector3{0.0, 0.0, 0.0};
-  const bool listed = std::any_of(plan.scene.populations.begin(), plan.scene.populations.end(),
-                                  [](const Population& population) { return population.placed; });
-  return falls || listed ? std::max(bed_solid_fraction, plan.damper.fill_fraction) : plan.damper.fill_fraction;
+/// Candidates of a list per granule: half of the neighbours whose centres are within a mean diameter and the skin.
+/// Granules that fall, or are listed, may lie as a bed in whatever room.
+double candidates_per_granule(const Plan& plan) {
+  const std::vector<Population>& populations = plan.scene.populations;
+  const bool lie =
+      plan.scene.gravity != Vector3{0.0, 0.0, 0.0} ||
+      std::any_of(populations.begin(), populations.end(), [](const Population& one) { return one.placed; });
+  const double fill = lie ? std::max(bed_solid_fraction, plan.damper.fill_fraction) : plan.damper.fill_fraction;
+  const double reach = 1.0 + 0.5 * plan.skin / plan.mean_radius;
+  return std::min(0.5 * static_cast<double>(plan.granules), 4.0 * fill * reach * reach * reach);
 }
 
-/// At its most, which is as a run begins or saves its state. Rows of position, motion and force, ids and scratch of the
-/// sort, and the candidates of a list; some eight arrays of them, and seven of the ledger, on whole large pages
-/// (solver/row_array.hpp) where they are large.
+/// Of the process, at its most, which is as a run begins or saves its state.
 std::size_t estimate_memory(const Plan& plan) {
   if (plan.granules == 0) return 0;
-  const auto granules = static_cast<double>(plan.granules);
   const bool ledger = plan.scene.output.energy, predicts = plan.scene.time.integrator == Integrator::verlet;
-  const bool springs = plan.scene.contact.friction == FrictionLaw::spring;
+  const double springs = plan.scene.contact.friction == FrictionLaw::spring ? 1.0 : 0.0;
+  const double candidates = candidates_per_granule(plan);
   constexpr double losses = 32.0, last_step = 64.0, losses_at_walls = 32.0 + 64.0 + 1.0, velocities = 64.0;
-  double steps = 32.0 + 64.0 + 64.0 + 8.0 + 36.0 + 16.0;
-  if (ledger) steps += losses + 2.0 * (last_step + losses_at_walls);
-  if (predicts) steps += 2.0 * velocities;
-  // Half of the neighbours whose centres are within a mean diameter and the skin, at this solid fraction.
-  const double reach = 1.0 + 0.5 * plan.skin / plan.mean_radius;
-  const double candidates = std::min(0.5 * granules, 4.0 * fill_of_bed(plan) * reach * reach * reach);
-  steps += (springs ? 8.0 + 36.0 : 8.0) * candidates;
+
+  // Bytes per granule: rows of position, motion and force, ids and scratch of the sort, and the list.
+  double steps = 32.0 + 64.0 + 64.0 + 8.0 + 36.0 + 16.0 + (8.0 + 36.0 * springs) * candidates;
   // Where granules are put, and what the trial of the first step keeps for the step itself.
   double start = 92.0 + 32.0 + 64.0;
-  if (predicts) start += velocities;
-  if (ledger) start += losses_at_walls;
   // The fields of RunState, and one of them on its way to the file.
-  double saved = 5.0 + 24.0 + 16.0 + 48.0 + 24.0 + 24.0 + (springs ? 8.0 + 40.0 : 8.0) * candidates;
-  if (predicts) saved += 48.0;
-  if (ledger) saved += 24.0 + 8.0 + 8.0;
-  const std::vector<Population>& populations = plan.scene.populations;
-  const bool poured = plan.scene.packing == PackingKind::settled &&
-                      std::any_of(populations.begin(), populations.end(),
-                                  [](const Population& one) { return one.count > 0 && !one.placed; });
-  const double beside = poured ? start + saved : std::max(start, saved); // what is poured is saved as it lies
-  constexpr double half_a_page = 1U << 20, program = 20.0e6;
-  const double arrays = ledger ? 15.0 : 8.0;
-  constexpr std::size_t large_arrays = (1U << 20) / sizeof(kernels::MotionRow);
+  double saved = 5.0 + 24.0 + 16.0 + 48.0 + 24.0 + 24.0 + (8.0 + 40.0 * springs) * candidates;
+  if (ledger) {
+    steps += losses + 2.0 * (last_step + losses_at_walls);
+    start += losses_at_walls;
+    saved += 24.0 + 8.0 + 8.0;
+  }
+  if (predicts) {
+    steps += 2.0 * velocities;
+    start += velocities;
+    saved += 48.0;
+  }
+  // Where granules lie while they are poured is kept beside the state that is saved meanwhile.
+  const bool poured = plan.scene.packing == PackingKind::settled && any_by_count(plan.scene);
+  const double beside = poured ? start + saved : std::max(start, saved);
+
+  // Some eight arrays, and seven of the ledger, are on whole large pages (solver/row_array.hpp) where they are large.
+  constexpr double program = 20.0e6, allocator = 1.1, half_a_page = 1U << 20;
+  const double large_pages = plan.granules >= (1U << 20) / sizeof(kernels::MotionRow) ? (ledger ? 15.0 : 8.0) : 0.0;
   const double cells = static_cast<double>(plan.grid[0]) * plan.grid[1] * plan.grid[2];
-  constexpr double allocator = 1.1; // what it keeps between blocks
-  return static_cast<std::size_t>(program + allocator * granules * (steps + beside) + listed_bytes(plan.scene) +
-                                  8.0 * cells + (plan.granules >= large_arrays ? arrays * half_a_page : 0.0));
+  return static_cast<std::size_t>(program + allocator * static_cast<double>(plan.granules) * (steps + beside) +
+                                  listed_bytes(plan.scene) + 8.0 * cells + large_pages * half_a_page);
 }
 
 void note(Plan& plan, std::string key, std::string message) {

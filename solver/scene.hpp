@@ -2,8 +2,6 @@
 // one's own; checked by make_plan (solver/plan.hpp). The keys are those of a scene file, table by table.
 #pragma once
 
-#include "solver/shared_list.hpp"
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,12 +38,12 @@ struct Population {
   std::optional<double> poisson; ///< -
   double speed = 0.0;            ///< initial, directions at random, m/s
 
-  bool placed = false;            ///< positions were given, by `positions` or `file`
-  SharedList<Vector3> positions;  ///< m, in the enclosure's frame
-  SharedList<Vector3> velocities; ///< m/s, in the laboratory's frame; empty: at rest (or `speed`)
-  SharedList<Vector3> spins;      ///< rad/s; empty: none
-  SharedList<double> radii;       ///< m; empty: all `radius`
-  SharedList<double> masses;      ///< kg; empty: all `mass`
+  bool placed = false;             ///< positions were given, by `positions` or `file`
+  std::vector<Vector3> positions;  ///< m, in the enclosure's frame
+  std::vector<Vector3> velocities; ///< m/s, in the laboratory's frame; empty: at rest (or `speed`)
+  std::vector<Vector3> spins;      ///< rad/s; empty: none
+  std::vector<double> radii;       ///< m; empty: all `radius`
+  std::vector<double> masses;      ///< kg; empty: all `mass`
 };
 
 enum class PackingKind { settled, random };

@@ -139,9 +139,7 @@ void check_fit(Faults& faults, const Scene& scene) {
                  "a granule wider than the enclosure", fmt::format("at most {:.6g} m", 0.5 * narrowest));
   }
   const double fraction = solid_volume(scene) / volume_of(scene.enclosure);
-  const bool by_count =
-      std::any_of(scene.populations.begin(), scene.populations.end(),
-                  [](const Population& population) { return population.count > 0 && !population.placed; });
+  const bool by_count = any_by_count(scene);
   // A few granules as wide as their box are a packing of their own: 0.52 for one in a cube, and never above 0.7405.
   const double most = by_count ? random_fraction : densest_fraction;
   if (fraction > most)

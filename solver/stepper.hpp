@@ -44,6 +44,7 @@ struct StepRecord {
 
 class Stepper {
 public:
+  /// The plan must outlive it.
   Stepper(const Plan& plan, const Placement& start, kernels::InstructionSet isa, int threads);
   /// Goes on where the stepper that the state was taken from was, by the same bits. Throws StateError.
   Stepper(const Plan& plan, const RunState& state, kernels::InstructionSet isa, int threads);
@@ -133,7 +134,7 @@ private:
   kernels::SpringArguments spring_arguments(std::size_t segment, SpringMemory::Rows& rows, std::size_t first,
                                             const std::vector<kernels::SpringLawRow>& laws);
 
-  const Plan plan_;
+  const Plan& plan_;
   double time_step_;
   double part_; ///< time_step_, or the part of it that is being taken, s
   kernels::InstructionSet isa_;

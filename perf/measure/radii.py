@@ -1,4 +1,4 @@
-"""Granules of unlike sizes, up to 1 : 20: cells of the small ones' size against cells of the largest ones'."""
+"""Granules of unlike sizes, up to 1 : 20: cells of the small ones' size against cells of the largest ones', and LAMMPS."""
 
 from . import peers, states
 from .common import Report, have, in_turn, median, number, perf, quick, repeats, step_timer
@@ -20,8 +20,8 @@ def twelve_sizes(ratio):
 
 BEDS = {f"1 : {ratio}": two_sizes(ratio) for ratio in ((1, 5) if quick else (1, 2, 3, 5, 10, 20))}
 WIDEST = 5 if quick else 10
-SKINS = (0.2e-3,) if quick else (0.2e-3, 0.3e-3, 0.4e-3)  # of LAMMPS, to try, m
 BEDS[f"twelve, 1 : {WIDEST}"] = twelve_sizes(WIDEST)
+SKINS = (0.2e-3,) if quick else (0.2e-3, 0.3e-3, 0.4e-3)  # of LAMMPS, to try, m
 
 
 def box(sizes):
@@ -65,33 +65,31 @@ def lammps(name, sizes, steps, warm):
 
 
 def main():
+    if not have("lmp"):
+        raise SystemExit("lmp is not installed")
     rows, notes = [], []
     steps, warm = (200, 50) if quick else (4000, 1000)
-    beside_lammps = have("lmp")
     for told, sizes in BEDS.items():
         largest = sizes[-1][0]
         name = f"radii_{len(sizes)}_{largest:g}_{SMALL}"
         file = scene(name, sizes)
         one_level = {"verlet.cell": 1.0 + max(0.5 / largest, 0.05)}
-        measurements = {"chosen": lambda: step_timer(file, steps=steps, warm=warm),
-                        "one": lambda: step_timer(file, one_level, steps=steps, warm=warm)}
-        skin = None
-        if beside_lammps:
-            measurements["LAMMPS"], skin = lammps(name, sizes, steps, warm)
-        taken = in_turn(measurements)
+        theirs, skin = lammps(name, sizes, steps, warm)
+        taken = in_turn({"chosen": lambda: step_timer(file, steps=steps, warm=warm),
+                         "one": lambda: step_timer(file, one_level, steps=steps, warm=warm), "LAMMPS": theirs})
         of = taken["chosen"][0]
         chosen, one = (median([t["processor_ns_per_step"][0] for t in taken[k]]) / of["granules"] for k in ("chosen", "one"))
-        theirs = median([1000.0 * t["us"] for t in taken["LAMMPS"]]) / of["granules"] if beside_lammps else None
-        if any(t["dangerous"] for t in taken.get("LAMMPS", [])):
+        lammps_time = median([1000.0 * t["us"] for t in taken["LAMMPS"]]) / of["granules"]
+        if any(t["dangerous"] for t in taken["LAMMPS"]):
             notes.append(f"{told}: LAMMPS reports dangerous builds.")
-        rows.append([told, f"{of['granules']:,}", number(chosen), number(one), number(one / chosen), number(theirs),
-                     f"**{theirs / chosen:.1f}**" if theirs else "-", f"{1e3 * skin:g}" if skin else "-",
+        rows.append([told, f"{of['granules']:,}", number(chosen), number(one), number(one / chosen),
+                     number(lammps_time), f"**{lammps_time / chosen:.1f}**", f"{1e3 * skin:g}",
                      number(of["contacts_per_granule"]), number(of["candidates_per_granule"]), peers.interval(of),
                      number(of["skin_over_diameter"] * largest)])
     report = Report("radii", "Granules of unlike sizes", f"""{SMALL:,} granules of {1000 * RADIUS} mm and as much volume of larger ones; and twelve sizes, as much volume of each: a bed
 that begins to be shaken as S3 is. Processor time, ns per granule and step, one thread, medians of {repeats} runs taken in turn,
 {steps:,} steps after {warm:,}: as the program chooses (where two levels pay: cells of the small granules' size, large ones
-looked for one by one), and with cells for the largest (`verlet.cell`). LAMMPS, if it is installed: its own loop time and
+looked for one by one), and with cells for the largest (`verlet.cell`). LAMMPS: its own loop time and
 processor share, the skin of least time of {", ".join(f"{1e3 * skin:g}" for skin in SKINS)} mm, and its own cells by collections of sizes
 (`neighbor multi`): one for each of two sizes, four for twelve.""")
     report.table(["radii", "granules", "chosen", "cells for the largest", "ratio", "LAMMPS", "LAMMPS / chosen",

@@ -81,7 +81,8 @@ TEST_CASE_TEMPLATE("a mirrored scene gives the mirrored motion", Run, OracleRun,
   const Scene scene = busy_box();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     CAPTURE(axis);
-    const auto mirror = [&](auto& positions, auto& velocities, auto& spins) {
+    const auto mirror = [&](std::vector<Vector3>& positions, std::vector<Vector3>& velocities,
+                            std::vector<Vector3>& spins) {
       for (std::size_t i = 0; i < positions.size(); ++i) {
         positions[i][axis] = scene.enclosure.size[axis] - positions[i][axis];
         velocities[i][axis] = -velocities[i][axis];
