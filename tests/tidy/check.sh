@@ -5,6 +5,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/../.." || exit 2
 build=${1:?usage: bash tests/tidy/check.sh BUILD}
+[ -f "$build/compile_commands.json" ] || { echo "tests/tidy/check.sh: '$build': no compile_commands.json; BUILD is a configured build folder" >&2; exit 2; }
 together=build-tidy
 jobs=$(nproc)
 
