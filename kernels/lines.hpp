@@ -17,6 +17,18 @@ template <class S> struct Lines {
 
   GRANDAMP_INLINE Line of(Row low, Row high) { return {low, high}; }
   GRANDAMP_INLINE Line load(const double* p) { return {D::row_load(p), D::row_load(p + 4)}; }
+  GRANDAMP_INLINE void store(double* p, Line line) {
+    D::row_store(p, line.low);
+    D::row_store(p + 4, line.high);
+  }
+  GRANDAMP_INLINE Row low(Line line) { return line.low; }
+  GRANDAMP_INLINE Row high(Line line) { return line.high; }
+  GRANDAMP_INLINE Line scaled(double by, Line line) {
+    const Row factor = D::row_broadcast(by);
+    return {factor * line.low, factor * line.high};
+  }
+  /// The first row with another added to it, the second as it is.
+  GRANDAMP_INLINE Line with_low_plus(Line line, Row row) { return {line.low + row, line.high}; }
   /// a b + c
   GRANDAMP_INLINE Line fma(Line a, Line b, Line c) {
     return {D::row_fma(a.low, b.low, c.low), D::row_fma(a.high, b.high, c.high)};

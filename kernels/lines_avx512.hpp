@@ -21,6 +21,13 @@ template <> struct Lines<Avx512> {
     return _mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1);
   }
   GRANDAMP_INLINE Line load(const double* p) { return _mm512_load_pd(p); }
+  GRANDAMP_INLINE void store(double* p, Line line) { _mm512_store_pd(p, line); }
+  GRANDAMP_INLINE __m256d low(Line line) { return _mm512_castpd512_pd256(line); }
+  GRANDAMP_INLINE __m256d high(Line line) { return _mm512_extractf64x4_pd(line, 1); }
+  GRANDAMP_INLINE Line scaled(double by, Line line) { return _mm512_mul_pd(_mm512_set1_pd(by), line); }
+  GRANDAMP_INLINE Line with_low_plus(Line line, __m256d row) {
+    return _mm512_mask_add_pd(line, 0x0f, line, _mm512_castpd256_pd512(row));
+  }
   GRANDAMP_INLINE Line fma(Line a, Line b, Line c) { return _mm512_fmadd_pd(a, b, c); }
   template <class Vector> GRANDAMP_INLINE void columns(const Line (&r)[8], Vector (&to)[8]) {
     __m512d pairs[8], fours[8];

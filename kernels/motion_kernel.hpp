@@ -4,11 +4,14 @@
 
 #include "kernels/arguments.hpp"
 #include "kernels/friction.hpp"
+#include "kernels/lines.hpp"
 
 namespace grandamp::kernels {
 
 template <class S, MotionEffects E> struct MotionLoop {
   using Row = typename S::Row;
+  using L = Lines<S>;
+  using Line = typename L::Line;
 
   const MotionArguments a; // a copy, where no row that is stored can be a part of it
   const Row zero = S::row_broadcast(0.0);
@@ -21,7 +24,7 @@ template <class S, MotionEffects E> struct MotionLoop {
   const Row twelfth = S::row_broadcast(1.0 / 12.0);
   const Row share_of_step = S::row_broadcast(a.time_step / 12.0);
   /// T/I = (5/2) turn / (m r), and s = r omega.
-  const Row turn = S::row_broadcast(2.5) * drift;
+  const Line drift_and_turn = L::of(drift, S::row_broadcast(2.5) * drift);
   Row kinetic = zero, spinning = zero, moment = zero;
   struct RowLosses {
     Row normal_granule, normal_wall, friction_granule, friction_wall;
@@ -33,23 +36,29 @@ template <class S, MotionEffects E> struct MotionLoop {
     MotionRow& motion = a.granules.motion[i];
     ForceRow& force = a.granules.force[i];
     const double inverse_mass = motion.inverse_mass;
-    const Row before = S::row_load(motion.velocity);
-    // The fourth component of the forces counts contacts, and must not get into the inverse mass.
-    Row after = S::row_fma(S::row_load(force.force), S::row_broadcast(inverse_mass) * drift, before);
-    if constexpr (E.accelerated) after = after + kick;
-    Row spin_before = zero, spin_after = zero, turned = zero;
-    if constexpr (E.rotates()) {
-      spin_before = S::row_load(motion.surface_spin);
-      turned = S::row_load(force.turn);
-      spin_after = S::row_fma(turned, S::row_broadcast(inverse_mass) * turn, spin_before);
-    }
     double touching = 0.0;
     if constexpr (E.counts()) touching = force.touching;
-
-    S::row_store(motion.velocity, after);
-    if constexpr (E.rotates()) S::row_store(motion.surface_spin, spin_after);
-    S::row_store(force.force, zero);
-    if constexpr (E.counts()) S::row_store(force.turn, friction_share_row<S>(touching));
+    Row before, after, spin_before = zero, spin_after = zero, turned = zero;
+    // The fourth component of the forces counts contacts, and must not get into the inverse mass.
+    if constexpr (E.rotates()) {
+      const Line line_before = L::load(motion.velocity), pushed = L::load(force.force);
+      Line line_after = L::fma(pushed, L::scaled(inverse_mass, drift_and_turn), line_before);
+      if constexpr (E.accelerated) line_after = L::with_low_plus(line_after, kick);
+      L::store(motion.velocity, line_after);
+      L::store(force.force, L::of(zero, friction_share_row<S>(touching)));
+      before = L::low(line_before);
+      after = L::low(line_after);
+      spin_before = L::high(line_before);
+      spin_after = L::high(line_after);
+      turned = L::high(pushed);
+    } else {
+      before = S::row_load(motion.velocity);
+      after = S::row_fma(S::row_load(force.force), S::row_broadcast(inverse_mass) * drift, before);
+      if constexpr (E.accelerated) after = after + kick;
+      S::row_store(motion.velocity, after);
+      S::row_store(force.force, zero);
+      if constexpr (E.counts()) S::row_store(force.turn, friction_share_row<S>(touching));
+    }
 
     double* position = &a.granules.position[i].x;
     const Row here = S::row_load(position);
