@@ -18,21 +18,11 @@ GRANDAMP_INLINE typename S::Vector coulomb_coefficient(typename S::Vector mu, ty
   return S::min(mu * S::abs(normal_force) * (S::broadcast(1.0) / square * S::sqrt(square)), cap);
 }
 
-/// A row that ends in the friction_share of a granule that had n contacts a step ago: 1/(1 + n), or 1/2 if it had none.
-/// Passive as long as n does not more than double, and grow by two, in a step.
-template <class S> GRANDAMP_INLINE typename S::Row friction_share_row(double touching) {
-  struct Table {
-    alignas(32) double rows[32][4];
-  };
-  static constexpr Table table = [] {
-    Table t{};
-    for (int n = 0; n < 32; ++n) t.rows[n][3] = n > 0 ? 1.0 / (1.0 + n) : 0.5;
-    return t;
-  }();
-  const auto n = static_cast<unsigned>(touching);
-  if (n < 32) [[likely]]
-    return S::row_load(table.rows[n]);
-  return S::row_set(0.0, 0.0, 0.0, 1.0 / (1.0 + touching)); // a division takes longer than all else here
+/// The friction_share of granules that had n contacts a step ago: 1/(1 + n), or 1/2 if none. Passive as long as n does
+/// not more than double, and grow by two, in a step.
+template <class S> GRANDAMP_INLINE typename S::Vector friction_share(typename S::Vector touching) {
+  const typename S::Vector one = S::broadcast(1.0);
+  return one / (one + S::max(touching, one));
 }
 
 } // namespace grandamp::kernels

@@ -33,6 +33,13 @@ template <class S> struct Lines {
   GRANDAMP_INLINE Line fma(Line a, Line b, Line c) {
     return {D::row_fma(a.low, b.low, c.low), D::row_fma(a.high, b.high, c.high)};
   }
+  /// Lines of zeros that each end in one of the lanes.
+  GRANDAMP_INLINE void last_of_lines(Vector last, Line (&to)[width]) {
+    const Vector zero = S::broadcast(0.0);
+    Row rows[width];
+    S::rows(zero, zero, zero, last, rows);
+    for (int lane = 0; lane < width; ++lane) to[lane] = {D::row_broadcast(0.0), rows[lane]};
+  }
   /// Transposes `width` lines into eight vectors.
   GRANDAMP_INLINE void columns(const Line (&lines)[width], Vector (&to)[8]) {
     Row rows[width];

@@ -31,52 +31,61 @@ template <class S, MotionEffects E> struct MotionLoop {
   };
   RowLosses lost{zero, zero, zero, zero}, early{zero, zero, zero, zero};
 
-  /// Moves granule i; its new velocity.
-  [[gnu::always_inline]] Row move(std::uint32_t i) {
-    MotionRow& motion = a.granules.motion[i];
-    ForceRow& force = a.granules.force[i];
+  /// Moves granule first + lane. Its new velocity, and in the fourth component its contacts in this step, if counted.
+  [[gnu::always_inline]] Row move(std::size_t first, std::uint32_t lane) {
+    // Rows as places after the first one's: a constant each, not an address to be worked out.
+    MotionRow& motion = (a.granules.motion + first)[lane];
+    ForceRow& force = (a.granules.force + first)[lane];
+    double* const position = &(a.granules.position + first)[lane].x;
     const double inverse_mass = motion.inverse_mass;
-    double touching = 0.0;
-    if constexpr (E.counts()) touching = force.touching;
-    Row before, after, spin_before = zero, spin_after = zero, turned = zero;
+    Row before, after, spin_before = zero, spin_after = zero, turned = zero, pushed;
     // The fourth component of the forces counts contacts, and must not get into the inverse mass.
     if constexpr (E.rotates()) {
-      const Line line_before = L::load(motion.velocity), pushed = L::load(force.force);
-      Line line_after = L::fma(pushed, L::scaled(inverse_mass, drift_and_turn), line_before);
+      const Line line_before = L::load(motion.velocity), line_pushed = L::load(force.force);
+      Line line_after = L::fma(line_pushed, L::scaled(inverse_mass, drift_and_turn), line_before);
       if constexpr (E.accelerated) line_after = L::with_low_plus(line_after, kick);
       L::store(motion.velocity, line_after);
-      L::store(force.force, L::of(zero, friction_share_row<S>(touching)));
       before = L::low(line_before);
       after = L::low(line_after);
+      pushed = L::low(line_pushed);
       spin_before = L::high(line_before);
       spin_after = L::high(line_after);
-      turned = L::high(pushed);
+      turned = L::high(line_pushed);
     } else {
       before = S::row_load(motion.velocity);
-      after = S::row_fma(S::row_load(force.force), S::row_broadcast(inverse_mass) * drift, before);
+      pushed = S::row_load(force.force);
+      after = S::row_fma(pushed, S::row_broadcast(inverse_mass) * drift, before);
       if constexpr (E.accelerated) after = after + kick;
       S::row_store(motion.velocity, after);
-      S::row_store(force.force, zero);
-      if constexpr (E.counts()) S::row_store(force.turn, friction_share_row<S>(touching));
+      if constexpr (!E.counts()) S::row_store(force.force, zero);
     }
-
-    double* position = &a.granules.position[i].x;
     const Row here = S::row_load(position);
     if constexpr (E.energies() || E.ledger()) {
       const Row mean = half * (before + after);
       const Row mean_spin = half * (spin_before + spin_after);
       if constexpr (E.energies()) observe(inverse_mass, mean, mean_spin, here);
-      if constexpr (E.ledger()) dissipate(i, mean, after - before, mean_spin, spin_after - spin_before, turned);
+      if constexpr (E.ledger()) dissipate(first + lane, mean, after - before, mean_spin, spin_after - spin_before, turned);
     }
     S::row_store(position, S::row_fma(drift, after, here));
 
     if constexpr (E.integration == Integration::verlet) {
-      MotionRow& predicted = a.granules.predicted[i];
+      MotionRow& predicted = (a.granules.predicted + first)[lane];
       S::row_store(predicted.velocity, S::row_fma(half, after - before, after));
       if constexpr (E.rotates())
         S::row_store(predicted.surface_spin, S::row_fma(half, spin_after - spin_before, spin_after));
     }
-    return after;
+    if constexpr (E.counts())
+      return S::row_with_last(after, pushed);
+    else
+      return after;
+  }
+
+  /// Clears the forces of the granules from `first` on, and leaves what each contact may take in the step to come.
+  [[gnu::always_inline]] void clear_counted(std::size_t first, std::uint32_t count, typename S::Vector touching) {
+    Line cleared[S::width];
+    L::last_of_lines(friction_share<S>(touching), cleared);
+    for (std::uint32_t lane = 0; lane < count; ++lane)
+      L::store((a.granules.force + first)[lane].force, cleared[lane]);
   }
 
   void observe(double inverse_mass, Row mean, Row mean_spin, Row here) {
@@ -102,7 +111,7 @@ template <class S, MotionEffects E> struct MotionLoop {
   /// m x'' + m x'''' dt^2 / 12 = force, has no term of that order but at its ends: with the mean, the ledger of any
   /// contact at eight steps is 2.8 % of its damping short (perf/ACCURACY.md). x''' dt^2 is half the change of velocity
   /// in the next step less that in the step before, so the next step finishes what this one begins.
-  void dissipate(std::uint32_t i, Row mean, Row gained, Row mean_spin, Row spun, Row turned) {
+  void dissipate(std::size_t i, Row mean, Row gained, Row mean_spin, Row spun, Row turned) {
     using Floats = typename S::Eight;
     LossRow& loss = a.granules.loss[i];
     LastStepRow& last = a.granules.last_step[i];
@@ -130,7 +139,7 @@ template <class S, MotionEffects E> struct MotionLoop {
     }
   }
 
-  void dissipate_at_walls(std::uint32_t i, const Motion& moved, Row mean_spin, Row spun, const LastStepRow& last) {
+  void dissipate_at_walls(std::size_t i, const Motion& moved, Row mean_spin, Row spun, const LastStepRow& last) {
     const WallLossRows &walls = a.granules.wall_loss, &walls_before = a.granules.wall_loss_before;
     ForceRow &now = walls.friction[i], &then = walls_before.friction[i];
     take_cleared(lost.normal_wall, early.normal_wall, walls.damping[i].force, walls_before.damping[i].force, moved);
@@ -189,26 +198,29 @@ template <class S, MotionEffects E> void motion_kernel(const MotionArguments& ar
   using Row = typename S::Row;
   constexpr std::uint32_t width = S::width;
   MotionLoop<S, E> loop{.a = arguments};
-  const std::uint32_t last = arguments.last;
+  const std::size_t last = arguments.last;
   Vector fastest = S::broadcast(result.max_speed_squared);
   Vector total = S::broadcast(0.0);
-  const auto note = [&](const Row(&rows)[width]) __attribute__((always_inline)) {
-    Vector x, y, z, inverse_mass;
-    S::columns(rows, x, y, z, inverse_mass);
+  const auto finish = [&](const Row(&rows)[width], std::size_t first, std::uint32_t count)
+      __attribute__((always_inline)) {
+    Vector x, y, z, touching;
+    S::columns(rows, x, y, z, touching);
     const Vector square = S::fma(z, z, S::fma(y, y, x * x));
     fastest = S::max(fastest, square);
     total = total + square;
+    if constexpr (E.counts()) loop.clear_counted(first, count, touching);
   };
-  std::uint32_t i = arguments.first;
+  std::size_t i = arguments.first;
   for (; i + width <= last; i += width) {
     Row rows[width];
-    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = loop.move(i + lane);
-    note(rows);
+    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = loop.move(i, lane);
+    finish(rows, i, width);
   }
   if (i < last) {
+    const auto left = static_cast<std::uint32_t>(last - i);
     Row rows[width];
-    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = i + lane < last ? loop.move(i + lane) : loop.zero;
-    note(rows);
+    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = lane < left ? loop.move(i, lane) : loop.zero;
+    finish(rows, i, left);
   }
   double fast[width], all[width];
   S::store(fast, fastest);

@@ -17,6 +17,7 @@
 //   less(a, b)                      one bit per lane
 //   row_load, row_store, row_broadcast, row_fma, row_fnma, row_min, row_set
 //   row_of_floats                   of four floats, unaligned
+//   row_with_last(row, last)        three of the one, the fourth of the other
 //   columns(rows, a, b, c, d)       transposes `width` rows into four vectors
 //   rows(a, b, c, d, rows)          and back
 //   select(from, mask, to)          moves the marked ones of `width` list entries together; returns their number.

@@ -52,6 +52,7 @@ struct Avx2 {
   GRANDAMP_INLINE Row row_fma(Row a, Row b, Row c) { return xsimd::fma(a, b, c); }
   GRANDAMP_INLINE Row row_fnma(Row a, Row b, Row c) { return xsimd::fnma(a, b, c); }
   GRANDAMP_INLINE Row row_min(Row a, Row b) { return xsimd::min(a, b); }
+  GRANDAMP_INLINE Row row_with_last(Row row, Row last) { return _mm256_blend_pd(row, last, 8); }
 
   GRANDAMP_INLINE void columns(const Row (&r)[4], Vector& a, Vector& b, Vector& c, Vector& d) {
     const __m256d ac01 = _mm256_unpacklo_pd(r[0], r[1]);

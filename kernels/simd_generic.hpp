@@ -49,6 +49,7 @@ struct Generic {
   GRANDAMP_INLINE Row row_fma(Row a, Row b, Row c) { return a * b + c; }
   GRANDAMP_INLINE Row row_fnma(Row a, Row b, Row c) { return c - a * b; }
   GRANDAMP_INLINE Row row_min(Row a, Row b) { return min(a, b); }
+  GRANDAMP_INLINE Row row_with_last(Row row, Row last) { return Row{row[0], row[1], row[2], last[3]}; }
 
   GRANDAMP_INLINE void columns(const Row (&r)[4], Vector& a, Vector& b, Vector& c, Vector& d) {
     const Vector ab01 = __builtin_shuffle(r[0], r[1], Mask{0, 4, 2, 6});
