@@ -31,12 +31,11 @@ template <class S, MotionEffects E> struct MotionLoop {
   };
   RowLosses lost{zero, zero, zero, zero}, early{zero, zero, zero, zero};
 
-  /// Moves granule first + lane. Its new velocity, and in the fourth component its contacts in this step, if counted.
-  [[gnu::always_inline]] Row move(std::size_t first, std::uint32_t lane) {
+  /// Kicks granule first + lane. Its new velocity, and in the fourth component its contacts in this step, if counted.
+  [[gnu::always_inline]] Row kicked(std::size_t first, std::uint32_t lane) {
     // Rows as places after the first one's: a constant each, not an address to be worked out.
     MotionRow& motion = (a.granules.motion + first)[lane];
     ForceRow& force = (a.granules.force + first)[lane];
-    double* const position = &(a.granules.position + first)[lane].x;
     const double inverse_mass = motion.inverse_mass;
     Row before, after, spin_before = zero, spin_after = zero, turned = zero, pushed;
     // The fourth component of the forces counts contacts, and must not get into the inverse mass.
@@ -59,15 +58,12 @@ template <class S, MotionEffects E> struct MotionLoop {
       S::row_store(motion.velocity, after);
       if constexpr (!E.counts()) S::row_store(force.force, zero);
     }
-    const Row here = S::row_load(position);
     if constexpr (E.energies() || E.ledger()) {
       const Row mean = half * (before + after);
       const Row mean_spin = half * (spin_before + spin_after);
-      if constexpr (E.energies()) observe(inverse_mass, mean, mean_spin, here);
+      if constexpr (E.energies()) observe(inverse_mass, mean, mean_spin, S::row_load(&(a.granules.position + first)[lane].x));
       if constexpr (E.ledger()) dissipate(first + lane, mean, after - before, mean_spin, spin_after - spin_before, turned);
     }
-    S::row_store(position, S::row_fma(drift, after, here));
-
     if constexpr (E.integration == Integration::verlet) {
       MotionRow& predicted = (a.granules.predicted + first)[lane];
       S::row_store(predicted.velocity, S::row_fma(half, after - before, after));
@@ -78,6 +74,14 @@ template <class S, MotionEffects E> struct MotionLoop {
       return S::row_with_last(after, pushed);
     else
       return after;
+  }
+
+  /// Two positions share a line of memory, which takes one turn of the processor's stores if nothing stands between them.
+  [[gnu::always_inline]] void drifted(std::size_t first, std::uint32_t count, const Row (&velocities)[S::width]) {
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      double* const position = &(a.granules.position + first)[lane].x;
+      S::row_store(position, S::row_fma(drift, velocities[lane], S::row_load(position)));
+    }
   }
 
   /// Clears the forces of the granules from `first` on, and leaves what each contact may take in the step to come.
@@ -203,6 +207,7 @@ template <class S, MotionEffects E> void motion_kernel(const MotionArguments& ar
   Vector total = S::broadcast(0.0);
   const auto finish = [&](const Row(&rows)[width], std::size_t first, std::uint32_t count)
       __attribute__((always_inline)) {
+    loop.drifted(first, count, rows);
     Vector x, y, z, touching;
     S::columns(rows, x, y, z, touching);
     const Vector square = S::fma(z, z, S::fma(y, y, x * x));
@@ -213,13 +218,13 @@ template <class S, MotionEffects E> void motion_kernel(const MotionArguments& ar
   std::size_t i = arguments.first;
   for (; i + width <= last; i += width) {
     Row rows[width];
-    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = loop.move(i, lane);
+    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = loop.kicked(i, lane);
     finish(rows, i, width);
   }
   if (i < last) {
     const auto left = static_cast<std::uint32_t>(last - i);
     Row rows[width];
-    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = lane < left ? loop.move(i, lane) : loop.zero;
+    for (std::uint32_t lane = 0; lane < width; ++lane) rows[lane] = lane < left ? loop.kicked(i, lane) : loop.zero;
     finish(rows, i, left);
   }
   double fast[width], all[width];
