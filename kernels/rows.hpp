@@ -87,8 +87,6 @@ template <class Row> [[gnu::always_inline]] static inline Row& row_at(Row* rows,
   return *reinterpret_cast<Row*>(reinterpret_cast<Byte*>(rows) + offset * scale);
 }
 
-/// Granules per block: what is swept at a time, pairs first, then motion.
-inline constexpr std::uint32_t block_granules = 512;
 /// Lists are padded to this many entries, whatever the lane count, so that every instruction set walks the same list.
 inline constexpr std::uint32_t list_padding = 8;
 /// Pairs found touching are padded to this many: lanes of the widest law, in float.

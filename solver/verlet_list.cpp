@@ -217,6 +217,10 @@ void append(PairList& list, kernels::CellRows rows, std::uint32_t first, std::ui
 
 } // namespace
 
+std::uint32_t block_granules(std::uint32_t granules) noexcept {
+  return granules < single_segment ? 1024 : 512;
+}
+
 std::size_t PairRange::to_test(double share) const {
   std::size_t classes = 1;
   while (classes < gap_classes && share >= static_cast<double>(classes) / static_cast<double>(gap_classes)) ++classes;
@@ -281,6 +285,7 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
   segment.inner.clear();
   segment.boundary.clear();
   segment.candidates = 0;
+  const std::uint32_t block_size = block_granules(granules.count());
   Block block;
   block.first = segment.first;
   block.front = block.ahead = segment.first;
@@ -321,9 +326,9 @@ void VerletList::search_segment(Segment& segment, int first_layer, int last_laye
       const std::uint32_t end = inner.own[inner.cells];
       const auto reached = [&](const kernels::CellRows& rows) { return rows.beside[rows.count - 1][rows.cells]; };
       for (std::uint32_t first = 0, last = 0; inner.own[last] < end; first = last) {
-        if (inner.own[first] - block.first >= kernels::block_granules) finish_block(inner.own[first]);
+        if (inner.own[first] - block.first >= block_size) finish_block(inner.own[first]);
         do ++last;
-        while (last < inner.cells && inner.own[last] - block.first < kernels::block_granules);
+        while (last < inner.cells && inner.own[last] - block.first < block_size);
         append(segment.inner, inner, first, last, arguments, search.coarse);
         block.ahead = std::max(block.ahead, inner.count > 0 ? reached(inner) : end);
         block.front = std::max(block.front, block.ahead);
@@ -390,10 +395,11 @@ void VerletList::build_from_all_pairs(Granules& granules, const std::vector<Wall
   segment.inner.clear();
   segment.boundary.clear();
   segment.candidates = 0;
-  for (std::uint32_t first = 0; first < segment.last || first == 0; first += kernels::block_granules) {
+  const std::uint32_t block_size = block_granules(granules.count());
+  for (std::uint32_t first = 0; first < segment.last || first == 0; first += block_size) {
     Block block;
     block.first = first;
-    block.last = std::min(first + kernels::block_granules, segment.last);
+    block.last = std::min(first + block_size, segment.last);
     const std::size_t first_pair = segment.inner.count();
     for (std::uint32_t i = block.first; i < block.last; ++i) {
       RowPair* to = segment.inner.room_for(segment.last - i + 2 * kernels::list_padding);

@@ -54,6 +54,10 @@ struct PairRange {
   std::size_t to_test(double share) const;
 };
 
+/// How many of a bed's granules are swept at a time, pairs first, then motion: fewer where the bed exceeds a
+/// second-level cache, out of which they are not to fall in between.
+std::uint32_t block_granules(std::uint32_t granules) noexcept;
+
 struct Block {
   std::uint32_t first = 0, last = 0; ///< rows
   PairRange inner, boundary;         ///< in the segment's lists
