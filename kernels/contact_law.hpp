@@ -25,8 +25,8 @@ template <class S> struct ContactGeometry {
   using Vector = typename S::Vector;
   Vector overlap;
   Vector nx, ny, nz;
-  Vector vx, vy, vz;    ///< v_i - v_j
-  Vector sx, sy, sz;    ///< s_i + s_j, surface spins
+  Vector closing;       ///< d'
+  Vector ux, uy, uz;    ///< slip: the velocity of the contact point across the normal (friction)
   Vector lever;         ///< a/r: contact point's distance over the radius
   Vector root;          ///< sqrt(R overlap), R of Hertz
   Vector mass;          ///< effective
@@ -79,6 +79,19 @@ GRANDAMP_INLINE void slip_of(const ContactGeometry<S>& c, typename S::Vector clo
   }
 }
 
+/// Closing speed, and with friction the slip, of v = v_i - v_j and s = s_i + s_j (surface spins); after the normal and
+/// the lever.
+template <class S, ContactEffects E>
+GRANDAMP_INLINE void velocities(ContactGeometry<S>& c, typename S::Vector vx, typename S::Vector vy,
+                                typename S::Vector vz, const typename S::Vector& sx, const typename S::Vector& sy,
+                                const typename S::Vector& sz) {
+  c.closing = S::fma(vz, c.nz, S::fma(vy, c.ny, vx * c.nx));
+  if constexpr (E.rubs()) {
+    slip_of<S, E.rotates()>(c, c.closing, sx, sy, sz, vx, vy, vz);
+    c.ux = vx, c.uy = vy, c.uz = vz;
+  }
+}
+
 /// -f_t of spring, dashpot and slider at the slip u; the memory moves on by a step.
 template <class S, ContactEffects E>
 GRANDAMP_INLINE void spring_friction(const ContactGeometry<S>& c, ContactMemory<S>& memory, typename S::Vector most,
@@ -123,7 +136,7 @@ GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVector
   const Vector spring = hertz_force<S>(law.stiffness, c.root, c.overlap);
   if constexpr (E.energies()) out.elastic = hertz_energy<S>(spring, c.overlap);
 
-  out.closing = S::fma(c.vz, c.nz, S::fma(c.vy, c.ny, c.vx * c.nx));
+  out.closing = c.closing;
   Vector normal = spring;
   if constexpr (E.damped()) {
     const Vector coefficient = damping_coefficient<S, E.damping>(law.damping, c.mass, law.stiffness, c.root);
@@ -141,8 +154,7 @@ GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVector
     out.fy = minus * c.ny;
     out.fz = minus * c.nz;
   } else {
-    Vector ux = c.vx, uy = c.vy, uz = c.vz;
-    slip_of<S, E.rotates()>(c, out.closing, c.sx, c.sy, c.sz, ux, uy, uz);
+    const Vector &ux = c.ux, &uy = c.uy, &uz = c.uz;
     Vector rx, ry, rz; // -f_t
     if constexpr (E.remembers()) {
       spring_friction<S, E>(c, *memory, law.friction * S::abs(normal), out.closing, ux, uy, uz, rx, ry, rz);

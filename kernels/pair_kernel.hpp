@@ -33,6 +33,17 @@ GRANDAMP_INLINE auto positions(const PositionRow* position, const RowPair* pairs
   };
 }
 
+/// The same, where loads are what a loop waits for: both offsets by one.
+GRANDAMP_INLINE auto positions_by_one_load(const PositionRow* position, const RowPair* pairs) {
+  return [=, both = std::uint64_t{}](int lane, bool second) mutable __attribute__((always_inline))->const PositionRow& {
+    if (!second) {
+      __builtin_memcpy(&both, pairs + lane, sizeof both);
+      asm("" : "+r"(both)); // or the compiler makes two loads of it
+    }
+    return row_at(position, static_cast<std::uint32_t>(second ? both >> 32 : both));
+  };
+}
+
 template <class S, ContactEffects E> struct PairLoop {
   using D = typename S::Double;
   using Vector = typename S::Vector;
@@ -60,7 +71,10 @@ template <class S, ContactEffects E> struct PairLoop {
     unsigned marks = 0;
     for (unsigned k = 0; k < list_padding; k += D::width) {
       typename D::Vector x, y, z, radii;
-      difference<D, alike>(positions(a.granules.position, pairs + k), twice, x, y, z, radii);
+      if constexpr (D::pairs_by_one_load)
+        difference<D, alike>(positions_by_one_load(a.granules.position, pairs + k), twice, x, y, z, radii);
+      else
+        difference<D, alike>(positions(a.granules.position, pairs + k), twice, x, y, z, radii);
       marks |= D::less(D::fma(z, z, D::fma(y, y, x * x)), radii * radii) << k;
     }
     __builtin_prefetch(pairs + list_ahead, 0, 2);
@@ -107,6 +121,7 @@ template <class S, ContactEffects E> struct PairLoop {
     asm("" : "+r"(pairs));
     const MotionRow* motion = a.granules.predicted;
     Vector inverse_mass, inverse_radius;
+    Vector vx, vy, vz, sx, sy, sz;
     if constexpr (E.rotates() || !alike) {
       typename L::Line lines[width];
       for (int lane = 0; lane < width; ++lane)
@@ -114,8 +129,8 @@ template <class S, ContactEffects E> struct PairLoop {
                              L::load(row_at(motion, pairs[lane].first_offset).velocity));
       Vector columns[8];
       L::columns(lines, columns);
-      c.vx = columns[0], c.vy = columns[1], c.vz = columns[2];
-      c.sx = columns[4], c.sy = columns[5], c.sz = columns[6];
+      vx = columns[0], vy = columns[1], vz = columns[2];
+      sx = columns[4], sy = columns[5], sz = columns[6];
       inverse_mass = columns[3];
       inverse_radius = columns[7];
     } else {
@@ -123,12 +138,12 @@ template <class S, ContactEffects E> struct PairLoop {
       for (int lane = 0; lane < width; ++lane)
         rows[lane] = S::row_load(row_at(motion, pairs[lane].first_offset).velocity) -
                      S::row_load(row_at(motion, pairs[lane].second_offset).velocity);
-      S::columns(rows, c.vx, c.vy, c.vz, inverse_mass);
+      S::columns(rows, vx, vy, vz, inverse_mass);
     }
     Vector inverse; // of the distance, by its square: the division need not wait for the root
     if constexpr (alike) {
       inverse = S::broadcast(1.0) / square * distance;
-      c.lever = distance * S::broadcast(0.5 / a.radius);
+      if constexpr (E.rotates()) c.lever = distance * S::broadcast(0.5 / a.radius);
       c.root = hertz_root<S>(S::broadcast(0.5 * a.radius), c.overlap);
       max_overlap = S::max(max_overlap, c.overlap * S::broadcast(1.0 / a.radius));
     } else {
@@ -146,6 +161,7 @@ template <class S, ContactEffects E> struct PairLoop {
     c.nx = x * inverse;
     c.ny = y * inverse;
     c.nz = z * inverse;
+    velocities<S, E>(c, vx, vy, vz, sx, sy, sz);
     ahead.ask();
   }
 
@@ -163,9 +179,9 @@ template <class S, ContactEffects E> struct PairLoop {
     ContactGeometry<S> c;
     c.overlap = kept.overlap;
     c.nx = kept.nx, c.ny = kept.ny, c.nz = kept.nz;
-    c.vx = kept.vx, c.vy = kept.vy, c.vz = kept.vz;
-    if constexpr (E.rotates()) c.sx = kept.sx, c.sy = kept.sy, c.sz = kept.sz;
-    c.lever = kept.lever;
+    c.closing = kept.closing;
+    if constexpr (E.rubs()) c.ux = kept.ux, c.uy = kept.uy, c.uz = kept.uz;
+    if constexpr (E.rotates()) c.lever = kept.lever;
     c.root = kept.root;
     c.mass = S::broadcast(0.5 * a.mass);
     return c;

@@ -10,6 +10,7 @@
 //   S::tiny                         a square far below any speed's or force's that is not zero
 //   S::few_marks                    up to which, of 64, marked entries are moved one by one (kernels/contact_loops.hpp)
 //   S::stages_apart                 whether contacts are worked off in three loops (kernels/contact_loops.hpp)
+//   S::pairs_by_one_load            whether a candidate's two offsets are loaded together (kernels/pair_kernel.hpp)
 //   load, store, broadcast          unaligned
 //   fma(a, b, c) = a b + c, fnma(a, b, c) = c - a b   (fused where the instruction set has it)
 //   fnms(a, b, c) = -c - a b        fused as those

@@ -29,6 +29,7 @@ struct Avx2 {
   static constexpr double tiny = 1e-200;
   static constexpr int few_marks = 20;
   static constexpr bool stages_apart = true;
+  static constexpr bool pairs_by_one_load = false;
 
   GRANDAMP_INLINE Vector load(const double* p) { return _mm256_loadu_pd(p); }
   GRANDAMP_INLINE void store(double* p, Vector v) { _mm256_storeu_pd(p, v); }

@@ -18,6 +18,7 @@ struct Avx512 {
   static constexpr double tiny = 1e-200;
   static constexpr int few_marks = 8;
   static constexpr bool stages_apart = true;
+  static constexpr bool pairs_by_one_load = true;
 
   GRANDAMP_INLINE Vector load(const double* p) { return _mm512_loadu_pd(p); }
   GRANDAMP_INLINE void store(double* p, Vector v) { _mm512_storeu_pd(p, v); }

@@ -16,6 +16,7 @@ struct Generic {
   static constexpr double tiny = 1e-200;
   static constexpr int few_marks = 20;
   static constexpr bool stages_apart = false;
+  static constexpr bool pairs_by_one_load = false;
 
   GRANDAMP_INLINE Vector load(const double* p) {
     Vector v;

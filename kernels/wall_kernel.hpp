@@ -70,14 +70,13 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     for (int lane = 0; lane < width; ++lane) lines[lane] = L::load(motion[list[lane]].velocity);
     Vector columns[8];
     L::columns(lines, columns);
-    c.vx = columns[0], c.vy = columns[1], c.vz = columns[2];
-    c.sx = columns[4], c.sy = columns[5], c.sz = columns[6];
     const Vector inverse_mass = columns[3], inverse_radius = columns[7];
 
     const Vector one = S::broadcast(1.0);
     c.lever = S::fnma(c.overlap, inverse_radius, one);
     const Vector along = S::fma(c.nz, S::broadcast(a.direction[2]),
                                 S::fma(c.ny, S::broadcast(a.direction[1]), c.nx * S::broadcast(a.direction[0])));
+    velocities<S, E>(c, columns[0], columns[1], columns[2], columns[4], columns[5], columns[6]);
     c.mass = one / S::fma(along * along, S::broadcast(a.enclosure_inverse_mass), inverse_mass);
     c.friction_mass = one / (inverse_mass + S::broadcast(a.friction_inverse_mass));
     max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
