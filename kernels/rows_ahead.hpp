@@ -19,7 +19,11 @@ public:
     rate_ = left > 0 && times > 0 ? static_cast<std::uint32_t>(one * left * part / (whole * times)) + 1 : 0;
   }
   [[gnu::always_inline]] void ask() {
-    for (due_ += rate_; due_ >= 2 * one; due_ -= 2 * one) ask_two();
+    due_ += rate_;
+    while (__builtin_expect(due_ >= 2 * one, 0)) {
+      due_ -= 2 * one;
+      ask_two();
+    }
   }
   void ask_all() {
     while (ask_two()) {
