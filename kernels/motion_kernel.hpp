@@ -61,8 +61,10 @@ template <class S, MotionEffects E> struct MotionLoop {
     if constexpr (E.energies() || E.ledger()) {
       const Row mean = half * (before + after);
       const Row mean_spin = half * (spin_before + spin_after);
-      if constexpr (E.energies()) observe(inverse_mass, mean, mean_spin, S::row_load(&(a.granules.position + first)[lane].x));
-      if constexpr (E.ledger()) dissipate(first + lane, mean, after - before, mean_spin, spin_after - spin_before, turned);
+      if constexpr (E.energies())
+        observe(inverse_mass, mean, mean_spin, S::row_load(&(a.granules.position + first)[lane].x));
+      if constexpr (E.ledger())
+        dissipate(first + lane, mean, after - before, mean_spin, spin_after - spin_before, turned);
     }
     if constexpr (E.integration == Integration::verlet) {
       MotionRow& predicted = (a.granules.predicted + first)[lane];
@@ -76,7 +78,8 @@ template <class S, MotionEffects E> struct MotionLoop {
       return after;
   }
 
-  /// Two positions share a line of memory, which takes one turn of the processor's stores if nothing stands between them.
+  /// Two positions share a line of memory, which takes one turn of the processor's stores if nothing stands between
+  /// them.
   [[gnu::always_inline]] void drifted(std::size_t first, std::uint32_t count, const Row (&velocities)[S::width]) {
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       double* const position = &(a.granules.position + first)[lane].x;
@@ -88,8 +91,7 @@ template <class S, MotionEffects E> struct MotionLoop {
   [[gnu::always_inline]] void clear_counted(std::size_t first, std::uint32_t count, typename S::Vector touching) {
     Line cleared[S::width];
     L::last_of_lines(friction_share<S>(touching), cleared);
-    for (std::uint32_t lane = 0; lane < count; ++lane)
-      L::store((a.granules.force + first)[lane].force, cleared[lane]);
+    for (std::uint32_t lane = 0; lane < count; ++lane) L::store((a.granules.force + first)[lane].force, cleared[lane]);
   }
 
   void observe(double inverse_mass, Row mean, Row mean_spin, Row here) {

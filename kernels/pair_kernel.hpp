@@ -35,7 +35,8 @@ GRANDAMP_INLINE auto positions(const PositionRow* position, const RowPair* pairs
 
 /// The same, where loads are what a loop waits for: both offsets by one.
 GRANDAMP_INLINE auto positions_by_one_load(const PositionRow* position, const RowPair* pairs) {
-  return [=, both = std::uint64_t{}](int lane, bool second) mutable __attribute__((always_inline))->const PositionRow& {
+  return
+      [ =, both = std::uint64_t{} ](int lane, bool second) mutable __attribute__((always_inline))->const PositionRow& {
     if (!second) {
       __builtin_memcpy(&both, pairs + lane, sizeof both);
       asm("" : "+r"(both)); // or the compiler makes two loads of it

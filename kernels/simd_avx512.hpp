@@ -9,11 +9,25 @@
 
 namespace grandamp::kernels {
 
+/// Eight lanes of float: AVX2's, but for masks, which are registers of their own here.
+struct EightFloatsAvx512 : EightFloatsAvx2 {
+  GRANDAMP_INLINE unsigned less(Vector a, Vector b) { return _mm256_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+  GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, RowPair* to) {
+    constexpr long long next = 1LL << (32 + offset_bits);
+    const __m512i lanes = _mm512_setr_epi64(0, next, 2 * next, 3 * next, 4 * next, 5 * next, 6 * next, 7 * next);
+    const RowPair pair = RowPair::of(first, base);
+    const __m512i partners = _mm512_add_epi64(
+        _mm512_set1_epi64(static_cast<long long>(pair.second_offset) << 32 | pair.first_offset), lanes);
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), partners));
+    return static_cast<unsigned>(__builtin_popcount(mask));
+  }
+};
+
 struct Avx512 {
   using Vector = xsimd::batch<double, xsimd::avx512dq>;
   using Row = xsimd::batch<double, xsimd::fma3<xsimd::avx2>>;
   using Double = Avx512;
-  using Eight = EightFloatsAvx2;
+  using Eight = EightFloatsAvx512;
   static constexpr int width = 8;
   static constexpr double tiny = 1e-200;
   static constexpr int few_marks = 8;
@@ -86,13 +100,7 @@ struct Avx512 {
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
   GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, RowPair* to) {
-    constexpr long long next = 1LL << (32 + offset_bits);
-    const __m512i lanes = _mm512_setr_epi64(0, next, 2 * next, 3 * next, 4 * next, 5 * next, 6 * next, 7 * next);
-    const RowPair pair = RowPair::of(first, base);
-    const __m512i partners = _mm512_add_epi64(
-        _mm512_set1_epi64(static_cast<long long>(pair.second_offset) << 32 | pair.first_offset), lanes);
-    _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), partners));
-    return static_cast<unsigned>(__builtin_popcount(mask));
+    return Eight::select_partners(first, base, mask, to);
   }
 
 private:
