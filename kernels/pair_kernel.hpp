@@ -33,17 +33,20 @@ GRANDAMP_INLINE auto positions(const PositionRow* position, const RowPair* pairs
   };
 }
 
-/// The same, where loads are what a loop waits for: both offsets by one.
-GRANDAMP_INLINE auto positions_by_one_load(const PositionRow* position, const RowPair* pairs) {
-  return
-      [ =, both = std::uint64_t{} ](int lane, bool second) mutable __attribute__((always_inline))->const PositionRow& {
+/// The same, where loads are what a loop waits for: both offsets by one. A pair's first granule is asked for first.
+struct PositionsByOneLoad {
+  const PositionRow* position;
+  const RowPair* pairs;
+  std::uint64_t both = 0;
+
+  [[gnu::always_inline]] const PositionRow& operator()(int lane, bool second) {
     if (!second) {
       __builtin_memcpy(&both, pairs + lane, sizeof both);
       asm("" : "+r"(both)); // or the compiler makes two loads of it
     }
     return row_at(position, static_cast<std::uint32_t>(second ? both >> 32 : both));
-  };
-}
+  }
+};
 
 template <class S, ContactEffects E> struct PairLoop {
   using D = typename S::Double;
@@ -73,7 +76,7 @@ template <class S, ContactEffects E> struct PairLoop {
     for (unsigned k = 0; k < list_padding; k += D::width) {
       typename D::Vector x, y, z, radii;
       if constexpr (D::pairs_by_one_load)
-        difference<D, alike>(positions_by_one_load(a.granules.position, pairs + k), twice, x, y, z, radii);
+        difference<D, alike>(PositionsByOneLoad{a.granules.position, pairs + k}, twice, x, y, z, radii);
       else
         difference<D, alike>(positions(a.granules.position, pairs + k), twice, x, y, z, radii);
       marks |= D::less(D::fma(z, z, D::fma(y, y, x * x)), radii * radii) << k;
