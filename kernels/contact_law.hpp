@@ -53,7 +53,6 @@ template <class S> struct ContactForces {
   Vector rx, ry, rz; ///< f_t
   Vector elastic;    ///< energy of the overlap
   Vector spring;     ///< energy of the tangential spring
-  Vector closing;    ///< d'
 };
 
 /// The lever times the normal: crossed with it, spins become velocities of the contact point, and forces there torques.
@@ -82,9 +81,9 @@ GRANDAMP_INLINE void slip_of(const ContactGeometry<S>& c, typename S::Vector clo
 /// Closing speed, and with friction the slip, of v = v_i - v_j and s = s_i + s_j (surface spins); after the normal and
 /// the lever.
 template <class S, ContactEffects E>
-GRANDAMP_INLINE void velocities(ContactGeometry<S>& c, typename S::Vector vx, typename S::Vector vy,
-                                typename S::Vector vz, const typename S::Vector& sx, const typename S::Vector& sy,
-                                const typename S::Vector& sz) {
+GRANDAMP_INLINE void closing_and_slip(ContactGeometry<S>& c, typename S::Vector vx, typename S::Vector vy,
+                                      typename S::Vector vz, const typename S::Vector& sx, const typename S::Vector& sy,
+                                      const typename S::Vector& sz) {
   c.closing = S::fma(vz, c.nz, S::fma(vy, c.ny, vx * c.nx));
   if constexpr (E.rubs()) {
     slip_of<S, E.rotates()>(c, c.closing, sx, sy, sz, vx, vy, vz);
@@ -92,21 +91,19 @@ GRANDAMP_INLINE void velocities(ContactGeometry<S>& c, typename S::Vector vx, ty
   }
 }
 
-/// -f_t of spring, dashpot and slider at the slip u; the memory moves on by a step.
+/// -f_t of spring, dashpot and slider; the memory moves on by a step.
 template <class S, ContactEffects E>
 GRANDAMP_INLINE void spring_friction(const ContactGeometry<S>& c, ContactMemory<S>& memory, typename S::Vector most,
-                                     typename S::Vector closing, typename S::Vector ux, typename S::Vector uy,
-                                     typename S::Vector uz, typename S::Vector& rx, typename S::Vector& ry,
-                                     typename S::Vector& rz) {
+                                     typename S::Vector& rx, typename S::Vector& ry, typename S::Vector& rz) {
   using Vector = typename S::Vector;
-  Vector mx = ux, my = uy, mz = uz;
+  Vector mx = c.ux, my = c.uy, mz = c.uz;
   if (memory.moved_otherwise) {
     mx = memory.mx, my = memory.my, mz = memory.mz;
     const Vector along = S::fma(mz, c.nz, S::fma(my, c.ny, mx * c.nx));
     slip_of<S, E.rotates()>(c, along, memory.wx, memory.wy, memory.wz, mx, my, mz);
   }
   Spring<S>& spring = memory.spring;
-  const Vector time = loading_time<S>(spring.root, c.overlap, closing, memory.time_step);
+  const Vector time = loading_time<S>(spring.root, c.overlap, c.closing, memory.time_step);
   turn_and_ease<S>(spring, c.nx, c.ny, c.nz, c.root);
   const Vector k = memory.law.stiffness * c.root * time;
   spring.fx = S::fnma(k, mx, spring.fx);
@@ -118,9 +115,9 @@ GRANDAMP_INLINE void spring_friction(const ContactGeometry<S>& c, ContactMemory<
   spring.fy = held * spring.fy;
   spring.fz = held * spring.fz;
   spring.root = c.root;
-  rx = S::fma(memory.law.damping, ux, S::broadcast(0.0) - spring.fx);
-  ry = S::fma(memory.law.damping, uy, S::broadcast(0.0) - spring.fy);
-  rz = S::fma(memory.law.damping, uz, S::broadcast(0.0) - spring.fz);
+  rx = S::fma(memory.law.damping, c.ux, S::broadcast(0.0) - spring.fx);
+  ry = S::fma(memory.law.damping, c.uy, S::broadcast(0.0) - spring.fy);
+  rz = S::fma(memory.law.damping, c.uz, S::broadcast(0.0) - spring.fz);
   const Vector all = held_at<S>(most, S::fma(rz, rz, S::fma(ry, ry, rx * rx)));
   rx = all * rx;
   ry = all * ry;
@@ -136,16 +133,15 @@ GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVector
   const Vector spring = hertz_force<S>(law.stiffness, c.root, c.overlap);
   if constexpr (E.energies()) out.elastic = hertz_energy<S>(spring, c.overlap);
 
-  out.closing = c.closing;
   Vector normal = spring;
   if constexpr (E.damped()) {
     const Vector coefficient = damping_coefficient<S, E.damping>(law.damping, c.mass, law.stiffness, c.root);
-    normal = S::fma(coefficient, out.closing, spring);
+    normal = S::fma(coefficient, c.closing, spring);
     if constexpr (E.only_pushes()) {
       normal = S::max(normal, S::broadcast(0.0));
       if constexpr (E.ledger()) out.damping = normal - spring;
     } else if constexpr (E.ledger())
-      out.damping = coefficient * out.closing;
+      out.damping = coefficient * c.closing;
   }
 
   if constexpr (!E.rubs()) {
@@ -154,17 +150,16 @@ GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVector
     out.fy = minus * c.ny;
     out.fz = minus * c.nz;
   } else {
-    const Vector &ux = c.ux, &uy = c.uy, &uz = c.uz;
     Vector rx, ry, rz; // -f_t
     if constexpr (E.remembers()) {
-      spring_friction<S, E>(c, *memory, law.friction * S::abs(normal), out.closing, ux, uy, uz, rx, ry, rz);
+      spring_friction<S, E>(c, *memory, law.friction * S::abs(normal), rx, ry, rz);
       if constexpr (E.energies()) out.spring = spring_energy<S>(memory->spring, memory->law.stiffness);
     } else {
-      const Vector slip_squared = S::fma(uz, uz, S::fma(uy, uy, ux * ux));
+      const Vector slip_squared = S::fma(c.uz, c.uz, S::fma(c.uy, c.uy, c.ux * c.ux));
       const Vector g = coulomb_coefficient<S>(law.friction, normal, slip_squared, friction_cap);
-      rx = g * ux;
-      ry = g * uy;
-      rz = g * uz;
+      rx = g * c.ux;
+      ry = g * c.uy;
+      rz = g * c.uz;
     }
     out.fx = S::fnms(normal, c.nx, rx);
     out.fy = S::fnms(normal, c.ny, ry);

@@ -31,16 +31,16 @@ template <> struct Lines<Avx512> {
   GRANDAMP_INLINE Line fma(Line a, Line b, Line c) { return _mm512_fmadd_pd(a, b, c); }
   GRANDAMP_INLINE void last_of_lines(__m512d last, Line (&to)[8]) {
     const __m512i lanes = _mm512_castpd_si512(last);
-    const auto turned = [](__m512i v) { return _mm512_castsi512_pd(v); };
+    const auto as_line = [](__m512i v) { return _mm512_castsi512_pd(v); };
     // Turned until the lane wanted is the last, which alone is kept.
-    to[0] = turned(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 1));
-    to[1] = turned(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 2));
-    to[2] = turned(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 3));
-    to[3] = turned(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 4));
-    to[4] = turned(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 5));
-    to[5] = turned(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 6));
-    to[6] = turned(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 7));
-    to[7] = turned(_mm512_maskz_mov_epi64(0x80, lanes));
+    to[0] = as_line(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 1));
+    to[1] = as_line(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 2));
+    to[2] = as_line(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 3));
+    to[3] = as_line(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 4));
+    to[4] = as_line(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 5));
+    to[5] = as_line(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 6));
+    to[6] = as_line(_mm512_maskz_alignr_epi64(0x80, lanes, lanes, 7));
+    to[7] = as_line(_mm512_maskz_mov_epi64(0x80, lanes));
   }
   template <class Vector> GRANDAMP_INLINE void columns(const Line (&r)[8], Vector (&to)[8]) {
     __m512d pairs[8], fours[8];

@@ -165,7 +165,7 @@ template <class S, ContactEffects E> struct PairLoop {
     c.nx = x * inverse;
     c.ny = y * inverse;
     c.nz = z * inverse;
-    velocities<S, E>(c, vx, vy, vz, sx, sy, sz);
+    closing_and_slip<S, E>(c, vx, vy, vz, sx, sy, sz);
     ahead.ask();
   }
 
@@ -224,7 +224,7 @@ template <class S, ContactEffects E> struct PairLoop {
       contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share * c.mass, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
-    max_closing = S::max(f.closing, max_closing); // a NaN leaves it as it was
+    max_closing = S::max(c.closing, max_closing); // a NaN leaves it as it was
     ahead.ask();
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);

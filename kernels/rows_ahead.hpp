@@ -20,6 +20,7 @@ public:
   }
   [[gnu::always_inline]] void ask() {
     due_ += rate_;
+    // Seldom; told so, the asking stands apart from the loops that it is a part of.
     while (__builtin_expect(due_ >= 2 * one, 0)) {
       due_ -= 2 * one;
       ask_two();

@@ -76,7 +76,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
     c.lever = S::fnma(c.overlap, inverse_radius, one);
     const Vector along = S::fma(c.nz, S::broadcast(a.direction[2]),
                                 S::fma(c.ny, S::broadcast(a.direction[1]), c.nx * S::broadcast(a.direction[0])));
-    velocities<S, E>(c, columns[0], columns[1], columns[2], columns[4], columns[5], columns[6]);
+    closing_and_slip<S, E>(c, columns[0], columns[1], columns[2], columns[4], columns[5], columns[6]);
     c.mass = one / S::fma(along * along, S::broadcast(a.enclosure_inverse_mass), inverse_mass);
     c.friction_mass = one / (inverse_mass + S::broadcast(a.friction_inverse_mass));
     max_overlap = S::max(max_overlap, c.overlap * inverse_radius);
@@ -104,7 +104,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
       contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share * c.friction_mass, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
-    max_closing = S::max(f.closing, max_closing); // a NaN leaves it as it was
+    max_closing = S::max(c.closing, max_closing); // a NaN leaves it as it was
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);
       result.contacts += lanes;
