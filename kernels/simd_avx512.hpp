@@ -88,15 +88,16 @@ struct Avx512 {
     r[7] = _mm512_extractf64x4_pd(r37, 1);
   }
 
+  // What is not marked stays as it was: filled with zeros instead, a Zen 5 waits for what the register held before.
   GRANDAMP_INLINE unsigned select(const RowPair* from, unsigned mask, RowPair* to) {
     const __m512i pairs = _mm512_loadu_si512(from);
-    _mm512_storeu_si512(to, _mm512_maskz_compress_epi64(static_cast<__mmask8>(mask), pairs));
+    _mm512_storeu_si512(to, _mm512_mask_compress_epi64(pairs, static_cast<__mmask8>(mask), pairs));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
   GRANDAMP_INLINE unsigned select(const std::uint32_t* from, unsigned mask, std::uint32_t* to) {
     const __m256i values = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
-                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), values));
+                        _mm256_mask_compress_epi32(values, static_cast<__mmask8>(mask), values));
     return static_cast<unsigned>(__builtin_popcount(mask));
   }
   GRANDAMP_INLINE unsigned select_partners(std::uint32_t first, std::uint32_t base, unsigned mask, RowPair* to) {
