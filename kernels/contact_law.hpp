@@ -145,10 +145,10 @@ GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVector
   }
 
   if constexpr (!E.rubs()) {
-    const Vector minus = S::broadcast(0.0) - normal;
-    out.fx = minus * c.nx;
-    out.fy = minus * c.ny;
-    out.fz = minus * c.nz;
+    const Vector zero = S::broadcast(0.0);
+    out.fx = S::fnms(normal, c.nx, zero);
+    out.fy = S::fnms(normal, c.ny, zero);
+    out.fz = S::fnms(normal, c.nz, zero);
   } else {
     Vector rx, ry, rz; // -f_t
     if constexpr (E.remembers()) {

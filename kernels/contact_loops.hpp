@@ -140,8 +140,9 @@ GRANDAMP_INLINE std::size_t find_touching(Loop& loop, const Entry* list, std::si
 /// Works off `count` contacts: loop.geometry, loop.forces and loop.add_rows, each of a vector of entries, the last two
 /// of how many of its lanes are used, and what is kept of it between them; loop.note_depth is shown all geometry. In
 /// three loops: the way of one contact through its roots and divisions is so long, and has so many instructions, that a
-/// processor cannot look beyond it to the next. Without vector registers to hold a contact in, in one: what is kept
-/// would cost more than it gains.
+/// processor cannot look beyond it to the next. A short law is worked out where its rows are added
+/// (Loop::law_with_rows). Without vector registers to hold a contact in, all in one loop: what is kept would cost more
+/// than it gains.
 template <class S, class Loop, class Entry>
 GRANDAMP_INLINE void work_off(Loop& loop, const Entry* entries, std::size_t count) {
   static_assert(contact_batch % S::width == 0 && contact_padding >= S::width);
@@ -151,16 +152,24 @@ GRANDAMP_INLINE void work_off(Loop& loop, const Entry* entries, std::size_t coun
   };
   if constexpr (S::stages_apart) {
     ContactGeometry<S> geometry[contact_batch / S::width];
-    ContactForces<S> forces[contact_batch / S::width];
     ContactGeometry<S>* c = geometry;
     for (const Entry* here = entries; here < end; here += S::width) loop.geometry(here, *c++);
     loop.note_depth(entries, count, geometry);
     c = geometry;
-    ContactForces<S>* f = forces;
-    for (const Entry* here = entries; here < end; here += S::width) loop.forces(here, lanes(here), *c++, *f++);
-    c = geometry;
-    f = forces;
-    for (const Entry* here = entries; here < end; here += S::width) loop.add_rows(here, lanes(here), *c++, *f++);
+    if constexpr (Loop::law_with_rows) {
+      for (const Entry* here = entries; here < end; here += S::width) {
+        ContactForces<S> f;
+        loop.forces(here, lanes(here), *c, f);
+        loop.add_rows(here, lanes(here), *c++, f);
+      }
+    } else {
+      ContactForces<S> forces[contact_batch / S::width];
+      ContactForces<S>* f = forces;
+      for (const Entry* here = entries; here < end; here += S::width) loop.forces(here, lanes(here), *c++, *f++);
+      c = geometry;
+      f = forces;
+      for (const Entry* here = entries; here < end; here += S::width) loop.add_rows(here, lanes(here), *c++, *f++);
+    }
   } else {
     for (const Entry* here = entries; here < end; here += S::width) {
       ContactGeometry<S> c;

@@ -55,6 +55,7 @@ template <class S, ContactEffects E> struct PairLoop {
   using L = Lines<S>;
   static constexpr int width = S::width;
   static constexpr bool alike = E.variety == Variety::alike;
+  static constexpr bool law_with_rows = !E.rotates();
 
   const PairArguments a; // a copy, where no row that is stored can be a part of it
   ContactResult& result;
@@ -63,7 +64,7 @@ template <class S, ContactEffects E> struct PairLoop {
   /// For velocities: those of the second granule are taken off, its spin and the inverses added.
   const typename L::Line opposed = L::of(S::row_set(-1.0, -1.0, -1.0, 1.0), S::row_set(1.0, 1.0, 1.0, 1.0));
   const Vector least_inverse_radius = S::broadcast(1.0 / a.radius);
-  Vector max_overlap = S::broadcast(result.max_overlap);
+  Vector max_overlap = S::broadcast(alike ? 0.0 : result.max_overlap); ///< alike: m; else over the smaller radius
   Vector max_closing = S::broadcast(0.0);
   /// No contact of this batch is deeper, over its smaller radius, but for rounding.
   Vector possible_overlap = S::broadcast(0.0);
@@ -85,8 +86,10 @@ template <class S, ContactEffects E> struct PairLoop {
     return marks;
   }
 
-  /// So many vectors, of `tested` of the pairs that are `left`: each asks three times for rows ahead.
-  void expect(std::size_t vectors, std::size_t tested, std::size_t left) { ahead.spread(3 * vectors, tested, left); }
+  /// So many vectors, of `tested` of the pairs that are `left`: each asks for rows ahead once in each of its loops.
+  void expect(std::size_t vectors, std::size_t tested, std::size_t left) {
+    ahead.spread((law_with_rows ? 2 : 3) * vectors, tested, left);
+  }
 
   /// From i to j, the distance and its square, the sum of the radii, and by how much they exceed it.
   void approach(const RowPair* pairs, Vector& x, Vector& y, Vector& z, Vector& square, Vector& distance, Vector& radii,
@@ -112,7 +115,7 @@ template <class S, ContactEffects E> struct PairLoop {
       difference<S, alike>(positions(a.granules.position, pairs), S::broadcast(2.0 * a.radius), x, y, z, radii);
       square = S::fma(z, z, S::fma(y, y, x * x));
       distance = S::sqrt(square);
-      overlap = S::max(radii - distance, S::broadcast(0.0));
+      overlap = radii - distance; // not negative: these touch, and the root of a rounded square is what was squared
     }
   }
 
@@ -149,7 +152,7 @@ template <class S, ContactEffects E> struct PairLoop {
       inverse = S::broadcast(1.0) / square * distance;
       if constexpr (E.rotates()) c.lever = distance * S::broadcast(0.5 / a.radius);
       c.root = hertz_root<S>(S::broadcast(0.5 * a.radius), c.overlap);
-      max_overlap = S::max(max_overlap, c.overlap * S::broadcast(1.0 / a.radius));
+      max_overlap = S::max(max_overlap, c.overlap);
     } else {
       // One division does for four: the inverse of a product, times all but one of its factors.
       const Vector lengths = square * radii, inverses = inverse_mass * inverse_radius;
@@ -166,6 +169,7 @@ template <class S, ContactEffects E> struct PairLoop {
     c.ny = y * inverse;
     c.nz = z * inverse;
     closing_and_slip<S, E>(c, vx, vy, vz, sx, sy, sz);
+    max_closing = S::max(c.closing, max_closing); // a NaN leaves it as it was
     ahead.ask();
   }
 
@@ -224,8 +228,7 @@ template <class S, ContactEffects E> struct PairLoop {
       contact_forces<S, E>(c, law, S::broadcast(a.friction_cap) * share * c.mass, f);
     } else
       contact_forces<S, E>(c, law, S::broadcast(0.0), f);
-    max_closing = S::max(c.closing, max_closing); // a NaN leaves it as it was
-    ahead.ask();
+    if constexpr (!law_with_rows) ahead.ask();
     if constexpr (E.energies()) {
       add_in_order<S>(f.elastic, lanes, result.elastic);
       result.contacts += lanes;
@@ -327,6 +330,7 @@ template <class S, ContactEffects E> void pair_kernel(const PairArguments& a, Co
   PairLoop<S, E> loop{.a = a, .result = result};
   work_off_list<S, E.remembers()>(loop, loop.a.pairs, loop.a.count, loop.a.touching, loop.a.springs.slots);
   loop.ahead.ask_all();
+  if constexpr (loop.alike) loop.max_overlap = loop.max_overlap * S::broadcast(1.0 / loop.a.radius);
   result.max_overlap = largest<S>(loop.max_overlap, result.max_overlap);
   result.max_closing = largest<S>(loop.max_closing, result.max_closing);
 }
