@@ -311,6 +311,64 @@ TEST_CASE("mixed precision keeps overlaps that float coordinates could not tell"
     }
 }
 
+TEST_CASE("pair kernels: granules that only just touch are pushed apart or not at all") {
+  for (const InstructionSet machine : machines())
+    for (const auto variety : {Variety::alike, Variety::sizes})
+      for (const auto precision : {Precision::full, Precision::mixed})
+        for (const auto friction : {Friction::none, Friction::coulomb}) {
+          const auto damping = friction == Friction::none ? kernels::Damping::none : kernels::Damping::tsuji;
+          const ContactEffects effects{damping, friction, variety, Observation::energies, precision};
+          const std::string which = describe(machine, effects);
+          CAPTURE(which);
+          Random random{std::mt19937_64(11)};
+          std::int64_t touching = 0, pushed = 0;
+          const int tries = 2000;
+          bool right = true;
+          for (int n = 0; n < tries; ++n) {
+            Bed bed = make_bed(effects, 7);
+            const double sum = bed.granules[0].radius + bed.granules[1].radius;
+            reference::Vector along = random.vector(1.0);
+            const double length = std::hypot(along[0], along[1], along[2]);
+            const double apart = sum * (1.0 + random(-4.0, 4.0) * std::numeric_limits<double>::epsilon());
+            for (std::size_t k = 0; k < 3; ++k) {
+              (&bed.position[0].x)[k] = 0.0;
+              (&bed.position[1].x)[k] = along[k] * (apart / length);
+            }
+            const auto ghost = static_cast<std::uint32_t>(bed.count());
+            std::vector<RowPair> pairs(list_padding, RowPair::of(ghost, ghost + 1));
+            std::vector<RowPair> scratch(contact_scratch);
+            pairs[5] = RowPair::of(0, 1);
+            PairArguments arguments;
+            arguments.granules = bed.arrays();
+            arguments.pairs = pairs.data();
+            arguments.count = pairs.size();
+            arguments.touching = scratch.data();
+            arguments.law = bed.rows.front();
+            arguments.laws = bed.rows.data();
+            arguments.populations = bed.populations;
+            arguments.radius = bed.largest_radius();
+            arguments.mass = bed.granules.front().mass;
+            arguments.friction_cap = cap(effects);
+            ContactResult result;
+            pair_kernel_for(machine, effects)(arguments, result);
+            touching += result.contacts;
+            right = right && result.max_overlap >= 0.0 && result.max_overlap < 1.0e-14 && result.elastic >= 0.0;
+            double push = 0.0;
+            for (std::size_t k = 0; k < 3; ++k) {
+              push -= bed.force[0].force[k] * along[k];
+              right = right && std::isfinite(bed.force[0].force[k]) && std::isfinite(bed.force[0].turn[k]);
+            }
+            if (friction == Friction::none) right = right && push >= 0.0;
+            pushed += push > 0.0;
+          }
+          CHECK(right);
+          // Some of them touch, some of these by less than can be told.
+          CHECK(touching > tries / 10);
+          CHECK(touching < tries - tries / 10);
+          if (friction == Friction::none) CHECK(pushed > 0);
+        }
+}
+
 TEST_CASE("what a set of effects leaves out is not even read by its pair kernels") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<ContactEffects> sets = contact_effects();
