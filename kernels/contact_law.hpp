@@ -144,38 +144,31 @@ GRANDAMP_INLINE void contact_forces(const ContactGeometry<S>& c, const LawVector
       out.damping = coefficient * c.closing;
   }
 
-  if constexpr (!E.rubs()) {
-    const Vector zero = S::broadcast(0.0);
-    out.fx = S::fnms(normal, c.nx, zero);
-    out.fy = S::fnms(normal, c.ny, zero);
-    out.fz = S::fnms(normal, c.nz, zero);
-  } else {
-    Vector rx, ry, rz; // -f_t
-    if constexpr (E.remembers()) {
-      spring_friction<S, E>(c, *memory, law.friction * S::abs(normal), rx, ry, rz);
-      if constexpr (E.energies()) out.spring = spring_energy<S>(memory->spring, memory->law.stiffness);
-    } else {
-      const Vector slip_squared = S::fma(c.uz, c.uz, S::fma(c.uy, c.uy, c.ux * c.ux));
-      const Vector g = coulomb_coefficient<S>(law.friction, normal, slip_squared, friction_cap);
-      rx = g * c.ux;
-      ry = g * c.uy;
-      rz = g * c.uz;
-    }
-    out.fx = S::fnms(normal, c.nx, rx);
-    out.fy = S::fnms(normal, c.ny, ry);
-    out.fz = S::fnms(normal, c.nz, rz);
-    if constexpr (E.ledger()) {
-      const Vector zero = S::broadcast(0.0);
-      out.rx = zero - rx;
-      out.ry = zero - ry;
-      out.rz = zero - rz;
-    }
-    if constexpr (E.rotates()) {
-      const Arm<S> arm(c);
-      out.tx = S::fnma(arm.y, rz, arm.z * ry);
-      out.ty = S::fnma(arm.z, rx, arm.x * rz);
-      out.tz = S::fnma(arm.x, ry, arm.y * rx);
-    }
+  const Vector zero = S::broadcast(0.0);
+  Vector rx = zero, ry = zero, rz = zero; // -f_t
+  if constexpr (E.remembers()) {
+    spring_friction<S, E>(c, *memory, law.friction * S::abs(normal), rx, ry, rz);
+    if constexpr (E.energies()) out.spring = spring_energy<S>(memory->spring, memory->law.stiffness);
+  } else if constexpr (E.rubs()) {
+    const Vector slip_squared = S::fma(c.uz, c.uz, S::fma(c.uy, c.uy, c.ux * c.ux));
+    const Vector g = coulomb_coefficient<S>(law.friction, normal, slip_squared, friction_cap);
+    rx = g * c.ux;
+    ry = g * c.uy;
+    rz = g * c.uz;
+  }
+  out.fx = S::fnms(normal, c.nx, rx);
+  out.fy = S::fnms(normal, c.ny, ry);
+  out.fz = S::fnms(normal, c.nz, rz);
+  if constexpr (E.ledger() && E.rubs()) {
+    out.rx = zero - rx;
+    out.ry = zero - ry;
+    out.rz = zero - rz;
+  }
+  if constexpr (E.rotates()) {
+    const Arm<S> arm(c);
+    out.tx = S::fnma(arm.y, rz, arm.z * ry);
+    out.ty = S::fnma(arm.z, rx, arm.x * rz);
+    out.tz = S::fnma(arm.x, ry, arm.y * rx);
   }
 }
 

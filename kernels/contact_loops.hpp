@@ -137,11 +137,16 @@ GRANDAMP_INLINE std::size_t find_touching(Loop& loop, const Entry* list, std::si
   return n;
 }
 
+/// Without rotation a law is so short that it is worked out where its rows are added.
+constexpr bool short_law(ContactEffects effects) {
+  return !effects.rotates();
+}
+
 /// Works off `count` contacts: loop.geometry, loop.forces and loop.add_rows, each of a vector of entries, the last two
 /// of how many of its lanes are used, and what is kept of it between them; loop.note_depth is shown all geometry. In
 /// three loops: the way of one contact through its roots and divisions is so long, and has so many instructions, that a
-/// processor cannot look beyond it to the next. A short law is worked out where its rows are added
-/// (Loop::law_with_rows). Without vector registers to hold a contact in, all in one loop: what is kept would cost more
+/// processor cannot look beyond it to the next. Of a short law (Loop::law_with_rows) in two.
+/// Without vector registers to hold a contact in, all in one loop: what is kept would cost more
 /// than it gains.
 template <class S, class Loop, class Entry>
 GRANDAMP_INLINE void work_off(Loop& loop, const Entry* entries, std::size_t count) {

@@ -55,7 +55,7 @@ template <class S, ContactEffects E> struct PairLoop {
   using L = Lines<S>;
   static constexpr int width = S::width;
   static constexpr bool alike = E.variety == Variety::alike;
-  static constexpr bool law_with_rows = !E.rotates();
+  static constexpr bool law_with_rows = short_law(E);
 
   const PairArguments a; // a copy, where no row that is stored can be a part of it
   ContactResult& result;

@@ -12,7 +12,7 @@ template <class S, ContactEffects E, Surface shape> struct WallLoop {
   using Vector = typename S::Vector;
   using Row = typename S::Row;
   static constexpr int width = S::width;
-  static constexpr bool law_with_rows = !E.rotates();
+  static constexpr bool law_with_rows = short_law(E);
 
   const WallArguments& a; // no copy, with which the portable kernel was slower
   WallResult& result;

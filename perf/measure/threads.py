@@ -17,6 +17,7 @@ def main():
             steps, warm = max(steps // 20, 10), max(warm // 20, 2)
         file = states.scene(name)
         settings = {"granules.0.file": states.general(name)}
+
         def timed(threads):
             return step_timer(file, settings, steps=steps, warm=warm, threads=threads)
 

@@ -166,6 +166,24 @@ bool touch(const Bed& bed, const RowPair& pair) {
   return reference::pair_contact(a, b, bed.laws.front(), step).touching;
 }
 
+/// Everything that a pair kernel may ask for, but springs. `pairs` are padded.
+PairArguments arguments_for(Bed& bed, ContactEffects effects, const std::vector<RowPair>& pairs,
+                            std::vector<RowPair>& scratch) {
+  scratch.resize(contact_scratch);
+  PairArguments a;
+  a.granules = bed.arrays();
+  a.pairs = pairs.data();
+  a.count = pairs.size();
+  a.touching = scratch.data();
+  a.law = bed.rows.front();
+  a.laws = bed.rows.data();
+  a.populations = bed.populations;
+  a.radius = bed.largest_radius();
+  a.mass = bed.granules.front().mass;
+  a.friction_cap = cap(effects);
+  return a;
+}
+
 void check_pairs(const std::vector<ContactEffects>& sets) {
   for (const InstructionSet machine : machines())
     for (const ContactEffects effects : sets)
@@ -226,18 +244,8 @@ void check_pairs(const std::vector<ContactEffects>& sets) {
         }
 
         while (pairs.size() % list_padding) pairs.push_back(RowPair::of(ghost, ghost + 1));
-        std::vector<RowPair> scratch(contact_scratch);
-        PairArguments arguments;
-        arguments.granules = bed.arrays();
-        arguments.pairs = pairs.data();
-        arguments.count = pairs.size();
-        arguments.touching = scratch.data();
-        arguments.law = bed.rows.front();
-        arguments.laws = bed.rows.data();
-        arguments.populations = bed.populations;
-        arguments.radius = bed.largest_radius();
-        arguments.mass = bed.granules.front().mass;
-        arguments.friction_cap = cap(effects);
+        std::vector<RowPair> scratch;
+        PairArguments arguments = arguments_for(bed, effects, pairs, scratch);
         if (effects.remembers()) arguments.springs = springs.arguments(bed);
         if (limit != 1) arguments.ahead = {{{3, ghost / 2}, {ghost / 2 + 1, ghost}}}; // changes nothing
         const std::vector<std::uint32_t> touched_before = springs.touched;
@@ -284,18 +292,9 @@ TEST_CASE("mixed precision keeps overlaps that float coordinates could not tell"
         REQUIRE(contact.touching);
         const auto ghost = static_cast<std::uint32_t>(bed.count());
         std::vector<RowPair> pairs(list_padding, RowPair::of(ghost, ghost + 1));
-        std::vector<RowPair> scratch(contact_scratch);
+        std::vector<RowPair> scratch;
         pairs[3] = RowPair::of(0, 1);
-        PairArguments arguments;
-        arguments.granules = bed.arrays();
-        arguments.pairs = pairs.data();
-        arguments.count = pairs.size();
-        arguments.touching = scratch.data();
-        arguments.law = bed.rows.front();
-        arguments.laws = bed.rows.data();
-        arguments.populations = bed.populations;
-        arguments.radius = radius;
-        arguments.mass = bed.granules[0].mass;
+        PairArguments arguments = arguments_for(bed, effects, pairs, scratch);
         ContactResult result;
         pair_kernel_for(machine, effects)(arguments, result);
         double error = 0.0;
@@ -336,19 +335,9 @@ TEST_CASE("pair kernels: granules that only just touch are pushed apart or not a
             }
             const auto ghost = static_cast<std::uint32_t>(bed.count());
             std::vector<RowPair> pairs(list_padding, RowPair::of(ghost, ghost + 1));
-            std::vector<RowPair> scratch(contact_scratch);
+            std::vector<RowPair> scratch;
             pairs[5] = RowPair::of(0, 1);
-            PairArguments arguments;
-            arguments.granules = bed.arrays();
-            arguments.pairs = pairs.data();
-            arguments.count = pairs.size();
-            arguments.touching = scratch.data();
-            arguments.law = bed.rows.front();
-            arguments.laws = bed.rows.data();
-            arguments.populations = bed.populations;
-            arguments.radius = bed.largest_radius();
-            arguments.mass = bed.granules.front().mass;
-            arguments.friction_cap = cap(effects);
+            PairArguments arguments = arguments_for(bed, effects, pairs, scratch);
             ContactResult result;
             pair_kernel_for(machine, effects)(arguments, result);
             touching += result.contacts;
@@ -384,25 +373,19 @@ TEST_CASE("what a set of effects leaves out is not even read by its pair kernels
       Bed bed = make_bed(effects, 7);
       const auto ghost = static_cast<std::uint32_t>(bed.count());
       std::vector<RowPair> pairs;
-      std::vector<RowPair> scratch(contact_scratch);
+      std::vector<RowPair> scratch;
       for (std::uint32_t i = 0; i < ghost; ++i)
         for (std::uint32_t j = i + 1; j < ghost; ++j) pairs.push_back(RowPair::of(i, j));
       while (pairs.size() % list_padding) pairs.push_back(RowPair::of(ghost, ghost + 1));
       if (!effects.rotates())
         for (std::size_t i = 0; i < bed.motion.size(); ++i)
           for (int k = 0; k < 3; ++k) bed.motion[i].surface_spin[k] = bed.force[i].turn[k] = nan;
-      PairArguments arguments;
-      arguments.granules = bed.arrays();
+      PairArguments arguments = arguments_for(bed, effects, pairs, scratch);
       arguments.granules.loss = nullptr;
-      arguments.pairs = pairs.data();
-      arguments.count = pairs.size();
-      arguments.touching = scratch.data();
-      arguments.law = bed.rows.front();
       if (!effects.rubs()) arguments.law.friction = nan;
       if (!effects.damped()) arguments.law.damping = nan;
-      arguments.friction_cap = effects.rubs() ? cap(effects) : nan;
-      arguments.radius = bed.largest_radius();
-      arguments.mass = effects.damped() || effects.rubs() ? bed.granules.front().mass : nan;
+      if (!effects.rubs()) arguments.friction_cap = nan;
+      if (!effects.damped() && !effects.rubs()) arguments.mass = nan;
       arguments.granules.population = nullptr;
       arguments.laws = nullptr;
       ContactResult result;
@@ -438,16 +421,8 @@ TEST_CASE("pair kernels: lists longer than a chunk, and larger figures from befo
       contacts += contact.touching;
       elastic += contact.elastic_energy;
     }
-    std::vector<RowPair> scratch(contact_scratch);
-    PairArguments arguments;
-    arguments.granules = bed.arrays();
-    arguments.pairs = pairs.data();
-    arguments.count = pairs.size();
-    arguments.touching = scratch.data();
-    arguments.law = bed.rows.front();
-    arguments.radius = bed.largest_radius();
-    arguments.mass = bed.granules.front().mass;
-    arguments.friction_cap = cap(effects);
+    std::vector<RowPair> scratch;
+    PairArguments arguments = arguments_for(bed, effects, pairs, scratch);
     ContactResult result;
     result.max_overlap = 0.9;
     result.max_closing = 77.0;
